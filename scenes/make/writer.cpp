@@ -1,5 +1,7 @@
 #include "scenes/make/writer.h"
 
+#include <tiny_gltf.h>
+
 #include <algorithm>
 #include <cmath>
 #include <fstream>
@@ -34,17 +36,21 @@ std::vector<double> to_list(const glm::dquat& q) {
 
 }  // namespace
 
-SceneWriter::SceneWriter(const nlohmann::json& scene_extras) {
-  model_.asset.version = "2.0";
-  model_.asset.generator = "slosh-make-scenes";
-  model_.buffers.emplace_back();
-  model_.scenes.emplace_back();
-  model_.scenes[0].extras = to_value(scene_extras);
-  model_.defaultScene = 0;
+SceneWriter::SceneWriter(const nlohmann::json& scene_extras) : model_(std::make_unique<tinygltf::Model>()) {
+  model_->asset.version = "2.0";
+  model_->asset.generator = "slosh-make-scenes";
+  model_->buffers.emplace_back();
+  model_->scenes.emplace_back();
+  model_->scenes[0].extras = to_value(scene_extras);
+  model_->defaultScene = 0;
 }
 
+SceneWriter::~SceneWriter() = default;
+SceneWriter::SceneWriter(SceneWriter&&) noexcept = default;
+SceneWriter& SceneWriter::operator=(SceneWriter&&) noexcept = default;
+
 int SceneWriter::add_view(std::span<const std::uint8_t> content, int target) {
-  std::vector<unsigned char>& bytes = model_.buffers[0].data;
+  std::vector<unsigned char>& bytes = model_->buffers[0].data;
   bytes.resize((bytes.size() + 3) & ~std::size_t{3});  // what follows an image is aligned, too
   tinygltf::BufferView view;
   view.buffer = 0;
@@ -52,8 +58,8 @@ int SceneWriter::add_view(std::span<const std::uint8_t> content, int target) {
   view.byteLength = content.size();
   view.target = target;
   bytes.insert(bytes.end(), content.begin(), content.end());
-  model_.bufferViews.push_back(view);
-  return static_cast<int>(model_.bufferViews.size()) - 1;
+  model_->bufferViews.push_back(view);
+  return static_cast<int>(model_->bufferViews.size()) - 1;
 }
 
 int SceneWriter::add_image(const std::string& name, std::span<const std::uint8_t> bytes) {
@@ -61,8 +67,8 @@ int SceneWriter::add_image(const std::string& name, std::span<const std::uint8_t
   image.name = name;
   image.mimeType = !bytes.empty() && bytes[0] == 0xff ? "image/jpeg" : "image/png";
   image.bufferView = add_view(bytes, 0);
-  model_.images.push_back(image);
-  return static_cast<int>(model_.images.size()) - 1;
+  model_->images.push_back(image);
+  return static_cast<int>(model_->images.size()) - 1;
 }
 
 int SceneWriter::add_texture(const PaintMap& map) {
@@ -77,10 +83,10 @@ int SceneWriter::add_texture(const PaintMap& map) {
   sampler.magFilter = map.sampling.nearest ? TINYGLTF_TEXTURE_FILTER_NEAREST : TINYGLTF_TEXTURE_FILTER_LINEAR;
   tinygltf::Texture texture;
   texture.source = map.image;
-  texture.sampler = static_cast<int>(model_.samplers.size());
-  model_.samplers.push_back(sampler);
-  model_.textures.push_back(texture);
-  return static_cast<int>(model_.textures.size()) - 1;
+  texture.sampler = static_cast<int>(model_->samplers.size());
+  model_->samplers.push_back(sampler);
+  model_->textures.push_back(texture);
+  return static_cast<int>(model_->textures.size()) - 1;
 }
 
 int SceneWriter::add_accessor(const std::vector<float>& numbers, int components, bool with_bounds,
@@ -101,8 +107,8 @@ int SceneWriter::add_accessor(const std::vector<float>& numbers, int components,
       accessor.maxValues[c] = std::max<double>(accessor.maxValues[c], numbers[i]);
     }
   }
-  model_.accessors.push_back(accessor);
-  return static_cast<int>(model_.accessors.size()) - 1;
+  model_->accessors.push_back(accessor);
+  return static_cast<int>(model_->accessors.size()) - 1;
 }
 
 int SceneWriter::add_material(const std::string& name, const Paint& paint) {
@@ -121,8 +127,8 @@ int SceneWriter::add_material(const std::string& name, const Paint& paint) {
   material.occlusionTexture.index = add_texture(paint.occlusion_map);
   material.occlusionTexture.strength = paint.occlusion_strength;
   material.emissiveTexture.index = add_texture(paint.emissive_map);
-  model_.materials.push_back(material);
-  return static_cast<int>(model_.materials.size()) - 1;
+  model_->materials.push_back(material);
+  return static_cast<int>(model_->materials.size()) - 1;
 }
 
 int SceneWriter::add_mesh(const std::string& name, const Solid& solid, int material) {
@@ -153,13 +159,13 @@ int SceneWriter::add_mesh(const std::string& name, const TriangleMesh& triangles
   accessor.componentType = TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT;
   accessor.count = 3 * triangles.triangles.size();
   accessor.type = TINYGLTF_TYPE_SCALAR;
-  model_.accessors.push_back(accessor);
-  primitive.indices = static_cast<int>(model_.accessors.size()) - 1;
+  model_->accessors.push_back(accessor);
+  primitive.indices = static_cast<int>(model_->accessors.size()) - 1;
   tinygltf::Mesh mesh;
   mesh.name = name;
   mesh.primitives.push_back(primitive);
-  model_.meshes.push_back(mesh);
-  return static_cast<int>(model_.meshes.size()) - 1;
+  model_->meshes.push_back(mesh);
+  return static_cast<int>(model_->meshes.size()) - 1;
 }
 
 int SceneWriter::add_node(const std::string& name, int mesh, const Pose& pose, const nlohmann::json& extras,
@@ -170,12 +176,12 @@ int SceneWriter::add_node(const std::string& name, int mesh, const Pose& pose, c
   node.translation = to_list(pose.position);
   node.rotation = to_list(pose.orientation);
   if (!extras.empty()) node.extras = to_value(extras);
-  model_.nodes.push_back(node);
-  const int index = static_cast<int>(model_.nodes.size()) - 1;
+  model_->nodes.push_back(node);
+  const int index = static_cast<int>(model_->nodes.size()) - 1;
   if (parent < 0) {
-    model_.scenes[0].nodes.push_back(index);
+    model_->scenes[0].nodes.push_back(index);
   } else {
-    model_.nodes[parent].children.push_back(index);
+    model_->nodes[parent].children.push_back(index);
   }
   return index;
 }
@@ -211,7 +217,7 @@ void SceneWriter::add_hand(const std::string& name, const std::string& grip,
     animation.samplers.push_back(sampler);
     animation.channels.push_back(channel);
   }
-  model_.animations.push_back(animation);
+  model_->animations.push_back(animation);
 }
 
 void SceneWriter::add_camera(const glm::dvec3& eye, const glm::dvec3& target, double vertical_fov_deg) {
@@ -221,12 +227,12 @@ void SceneWriter::add_camera(const glm::dvec3& eye, const glm::dvec3& target, do
   camera.perspective.aspectRatio = 4.0 / 3.0;
   camera.perspective.znear = 0.02;
   camera.perspective.zfar = 50.0;
-  model_.cameras.push_back(camera);
+  model_->cameras.push_back(camera);
   const glm::dvec3 back = glm::normalize(eye - target);
   const glm::dvec3 right = glm::normalize(glm::cross(glm::dvec3(0.0, 1.0, 0.0), back));
   const glm::dmat3 axes(right, glm::cross(back, right), back);
   const int node = add_node("camera", -1, {eye, glm::normalize(glm::quat_cast(axes))}, {});
-  model_.nodes[node].camera = static_cast<int>(model_.cameras.size()) - 1;
+  model_->nodes[node].camera = static_cast<int>(model_->cameras.size()) - 1;
 }
 
 bool SceneWriter::write(const std::filesystem::path& file) {
@@ -234,7 +240,7 @@ bool SceneWriter::write(const std::filesystem::path& file) {
   // Not WriteGltfSceneToFile: that returns true where the file cannot be opened, or the disk is full.
   std::ofstream out(file, std::ios::binary | std::ios::trunc);
   if (!out) return false;
-  const bool written = tinygltf::TinyGLTF().WriteGltfSceneToStream(&model_, out, !binary, binary);
+  const bool written = tinygltf::TinyGLTF().WriteGltfSceneToStream(model_.get(), out, !binary, binary);
   out.close();  // what is still in its buffer may find no room
   return written && !out.fail();
 }

@@ -1,11 +1,10 @@
 // Writing a scene as glTF, through tinygltf: nodes, physics in extras, animation, camera.
 #pragma once
 
-#include <tiny_gltf.h>
-
 #include <filesystem>
 #include <functional>
 #include <glm/glm.hpp>
+#include <memory>
 #include <nlohmann/json.hpp>
 #include <span>
 #include <string>
@@ -13,6 +12,11 @@
 #include "scenes/make/solid.h"
 #include "sim/math/pose.h"
 #include "sim/math/texture_sampling.h"
+
+// Not its header, which every scene would read.
+namespace tinygltf {
+class Model;
+}
 
 namespace slosh::make {
 
@@ -36,6 +40,9 @@ class SceneWriter {
  public:
   /// Properties of the whole scene (scenes/FIELDS.md).
   explicit SceneWriter(const nlohmann::json& scene_extras);
+  ~SceneWriter();
+  SceneWriter(SceneWriter&&) noexcept;
+  SceneWriter& operator=(SceneWriter&&) noexcept;
 
   /// `bytes`: a PNG or a JPEG; it goes into the file's buffer.
   int add_image(const std::string& name, std::span<const std::uint8_t> bytes);
@@ -61,7 +68,7 @@ class SceneWriter {
   int add_texture(const PaintMap& map);
   int add_accessor(const std::vector<float>& numbers, int components, bool with_bounds, int target);
 
-  tinygltf::Model model_;
+  std::unique_ptr<tinygltf::Model> model_;
 };
 
 }  // namespace slosh::make
