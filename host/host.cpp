@@ -285,12 +285,7 @@ void Host::publish(const Turn& turn, bool single) {
 void Host::count(double seconds) {
   report_.steps += 1;
   report_.step_time.add(seconds);
-  const StepTimes& parts = world_.times();
-  report_.total.sort += parts.sort;
-  report_.total.density += parts.density;
-  report_.total.force += parts.force;
-  report_.total.body += parts.body;
-  report_.total.total += parts.total;
+  report_.total += world_.times();
   show_state();
   shown_status_.store(recent_status(), std::memory_order_relaxed);
   if (schedule_.meter.add(seconds, schedule_.stepped_ns)) {

@@ -1,6 +1,7 @@
 // The world moving: owns all state, steps it by the plan, hands out snapshots.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <span>
@@ -29,14 +30,19 @@ struct HandleInput {
   double scale = 1.0;    ///< 0–1, ramps the coupling in on engaging
 };
 
-/// Time of each part of a step, s: wall time; for the particle passes on a GPU the GPU's own, which overlap
-/// with `body`.
+/// Time of each pass of a step, s: wall time; of an engine's passes on a GPU the GPU's own, of the sub-step
+/// before, which overlap with the others. A fused pass is in the one whose loop runs it.
 struct StepTimes {
-  double sort = 0.0;     ///< cell ids, counting sort, reordering, body particle placement
-  double density = 0.0;  ///< Eq 2, 7
-  double force = 0.0;    ///< Eq 5, 6, 9 and integration
-  double body = 0.0;     ///< Eq 10–14, couplings, contacts
-  double total = 0.0;
+  std::array<double, kPassCount> pass{};
+  double total = 0.0;  ///< wall time of the whole step
+
+  double& operator[](PassId id) { return pass[static_cast<std::size_t>(id)]; }
+  double operator[](PassId id) const { return pass[static_cast<std::size_t>(id)]; }
+  StepTimes& operator+=(const StepTimes& other) {
+    for (std::size_t i = 0; i < kPassCount; ++i) pass[i] += other.pass[i];
+    total += other.total;
+    return *this;
+  }
 };
 
 struct WorldOptions {

@@ -74,15 +74,18 @@ void World::Impl::begin_step() {
 
 void World::Impl::run(const SubStep& step) {
   if (plan().has_fluid()) engine->begin(bodies.bodies(), step.dt);
+  const StepTimes* later = engine->times();
+  Stopwatch watch;
   for (const PassId id : schedules[static_cast<std::size_t>(step.part)]) {
     const PassEntry& pass = entry(id);
-    Stopwatch watch;
     if (pass.run)
       pass.run(*this, step);
     else
       run_on_engine(id, step);
-    if (pass.time == &StepTimes::body) times.body += watch.lap();
+    const double took = watch.lap();
+    if (later == nullptr || !on_engine(id)) times[id] += took;
   }
+  if (later != nullptr) times += *later;
   if (plan().has_fluid()) report(step);
 }
 
@@ -145,10 +148,6 @@ void World::Impl::report(const SubStep& step) {
     wrenches[b].force += step.share * found[b].force;
     wrenches[b].torque += step.share * found[b].torque;
   }
-  const StepTimes passes = engine->times();
-  times.sort += passes.sort;
-  times.density += passes.density;
-  times.force += passes.force;
 }
 
 }  // namespace slosh

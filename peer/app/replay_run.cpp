@@ -110,12 +110,7 @@ void ReplayRun::run() {
     if (!stepped.value()) break;
     const std::int64_t now_ns = steady_now_ns();
     step_time_.add(to_seconds(now_ns - step_ns));
-    const StepTimes& parts = replayer_.world().times();
-    total_.sort += parts.sort;
-    total_.density += parts.density;
-    total_.force += parts.force;
-    total_.body += parts.body;
-    total_.total += parts.total;
+    total_ += replayer_.world().times();
     write_samples();
     if (measurer_) measurer_->step(replayer_.world(), replayer_.elapsed());
     if (frames) frames->show(replayer_.world(), replayer_.elapsed());

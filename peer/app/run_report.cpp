@@ -38,10 +38,9 @@ void report_time(double simulated, double wall, RunSummary& s) {
 void report_steps(const StepTimes& total, const Histogram& step_time, RunSummary& s) {
   s.step_ms = spread_of(step_time, 1e3);
   const double all = total.total > 0.0 ? total.total : 1.0;
-  s.share_sort = total.sort / all;
-  s.share_density = total.density / all;
-  s.share_force = total.force / all;
-  s.share_body = total.body / all;
+  for (std::size_t i = 0; i < kPassCount; ++i) {
+    if (total.pass[i] > 0.0) s.step_share.emplace_back(name(static_cast<PassId>(i)), total.pass[i] / all);
+  }
 }
 
 void report_left(const Diagnostics& end, const Diagnostics& start, const Plan& plan, RunSummary& s) {

@@ -187,8 +187,8 @@ Json to_json(const RunSummary& s) {
   json["wall_s"] = s.wall;
   json["real_time_factor"] = s.real_time_factor;
   json["step_ms"] = spread(s.step_ms);
-  json["step_share"] = {
-      {"sort", s.share_sort}, {"density", s.share_density}, {"force", s.share_force}, {"body", s.share_body}};
+  json["step_share"] = nlohmann::ordered_json::object();
+  for (const auto& [pass, share] : s.step_share) json["step_share"][pass] = share;
   json["device_loop_us"] = spread(s.device_loop_us);
   json["device_loop_us"]["ticks"] = s.device_ticks;
   json["device_loop_us"]["missed"] = s.device_missed;

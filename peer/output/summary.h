@@ -78,7 +78,7 @@ struct RunSummary {
   double wall = 0.0;              ///< s of the run itself
   double real_time_factor = 0.0;  ///< simulated over wall
   Spread step_ms;
-  double share_sort = 0.0, share_density = 0.0, share_force = 0.0, share_body = 0.0;  ///< of the step, 0–1
+  std::vector<std::pair<std::string, double>> step_share;  ///< of the step, 0–1, by pass
   Spread device_loop_us;  ///< period, wake to wake
   std::uint64_t device_ticks = 0;
   std::uint64_t device_missed = 0;

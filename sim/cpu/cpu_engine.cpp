@@ -4,7 +4,6 @@
 
 #include "sim/cpu/state.h"
 #include "sim/fluid_sums.h"
-#include "sim/stopwatch.h"
 
 namespace slosh {
 
@@ -44,15 +43,12 @@ class CpuEngine final : public ParticleEngine {
 
   void begin(std::span<const RigidBody> bodies, double dt) override {
     s_.bodies.assign(bodies.begin(), bodies.end());
-    times_ = StepTimes{};
     std::fill(s_.found.begin(), s_.found.end(), Wrench{});
     std::fill(s_.drags.begin(), s_.drags.end(), BodyDrag{});
     take_impulses(dt);
   }
   void run(PassId id, const PassInputs& inputs) override {
-    Stopwatch watch;
     function_of(id)(s_, inputs);
-    times_.*entry(id).time += watch.lap();
   }
   void wrenches(std::span<Wrench> out) override {
     std::copy(s_.found.begin(), s_.found.end(), out.begin());
@@ -141,8 +137,6 @@ class CpuEngine final : public ParticleEngine {
     return sums.finish(s_.fluid_count, s_.context.broken);
   }
 
-  StepTimes times() const override { return times_; }
-
   std::string name() const override {
     return "CPU, " + std::to_string(s_.team.size()) + (s_.team.size() == 1 ? " thread" : " threads");
   }
@@ -160,7 +154,6 @@ class CpuEngine final : public ParticleEngine {
 
   CpuState s_;
   std::vector<std::uint8_t> kinds_;  // by id
-  StepTimes times_;
 };
 
 }  // namespace

@@ -62,7 +62,9 @@ class CudaEngine final : public ParticleEngine {
     s_.guards.hand_over(s_.report.impulses(), s_.check, s_.stream);
   }
   void run(PassId id, const PassInputs& inputs) override {
-    if (!s_.idle()) function_of(id)(s_, inputs);
+    if (s_.idle()) return;
+    function_of(id)(s_, inputs);
+    s_.clock.ended(id, s_.check, s_.stream);
   }
 
   void wrenches(std::span<Wrench> out) override {
@@ -167,7 +169,7 @@ class CudaEngine final : public ParticleEngine {
     return sums.finish(s_.fluid_count, broken_before_ + broken(packs, s_.constants.grid));
   }
 
-  StepTimes times() const override { return s_.clock.times(); }
+  const StepTimes* times() const override { return &s_.clock.times(); }
   std::string failure() const override { return s_.check.failure(); }
   std::string name() const override { return "CUDA, " + device_; }
 

@@ -1,5 +1,5 @@
-// When each pass of a step ended, by the GPU's own clock, without waiting for it: the times are those of the
-// last step that is known to be over, the one before.
+// When each pass of a sub-step ended, by the GPU's own clock, without waiting for it: the times are those of
+// the last sub-step that is known to be over, the one before.
 #pragma once
 
 #include <array>
@@ -11,12 +11,10 @@ namespace slosh::cuda {
 
 class PassClock {
  public:
-  enum Mark { kBegin, kSorted, kDensity, kWrench, kForce, kEnd, kMarks };
-
   PassClock() = default;
   ~PassClock() {
-    for (auto& set : events_) {
-      for (cudaEvent_t event : set) {
+    for (SubStepEvents& set : sets_) {
+      for (cudaEvent_t event : set.events) {
         if (event) cudaEventDestroy(event);
       }
     }
@@ -25,38 +23,50 @@ class PassClock {
   PassClock& operator=(const PassClock&) = delete;
 
   void start(CallCheck& check) {
-    for (auto& set : events_) {
-      for (cudaEvent_t& event : set) check.ok(cudaEventCreate(&event), "cudaEventCreate");
+    for (SubStepEvents& set : sets_) {
+      for (cudaEvent_t& event : set.events) check.ok(cudaEventCreate(&event), "cudaEventCreate");
     }
   }
-  /// A step begins.
+  /// A sub-step begins.
   void begin(CallCheck& check, cudaStream_t stream) {
     current_ = 1 - current_;
-    ++steps_;
-    mark(kBegin, check, stream);
+    sets_[current_].count = 0;
+    record(check, stream);
   }
-  void mark(Mark mark, CallCheck& check, cudaStream_t stream) {
-    if (!check.failed()) check.ok(cudaEventRecord(events_[current_][mark], stream), "cudaEventRecord");
+  /// What was given to the stream since the call before belongs to pass `id`.
+  void ended(PassId id, CallCheck& check, cudaStream_t stream) {
+    SubStepEvents& set = sets_[current_];
+    if (set.count == set.events.size()) return;
+    set.of[set.count] = id;
+    record(check, stream);
   }
-  /// When all of the step before the one that begin() told of is over; this one may still be under way.
+  /// When all of the sub-step before the one that begin() told of is over; this one may still be under way.
   void read(CallCheck& check) {
-    if (steps_ < 2 || check.failed()) return;
-    const auto& set = events_[1 - current_];
-    const auto seconds = [&](Mark from, Mark to) {
+    const SubStepEvents& set = sets_[1 - current_];
+    times_ = StepTimes{};
+    for (std::size_t i = 1; i < set.count && !check.failed(); ++i) {
       float ms = 0.0f;
-      check.ok(cudaEventElapsedTime(&ms, set[from], set[to]), "cudaEventElapsedTime");
-      return 1e-3 * ms;
-    };
-    times_.sort = seconds(kBegin, kSorted) + seconds(kForce, kEnd);
-    times_.density = seconds(kSorted, kDensity);
-    times_.force = seconds(kDensity, kForce);
+      check.ok(cudaEventElapsedTime(&ms, set.events[i - 1], set.events[i]), "cudaEventElapsedTime");
+      times_[set.of[i]] += 1e-3 * ms;
+    }
   }
   const StepTimes& times() const { return times_; }
 
  private:
-  std::array<std::array<cudaEvent_t, kMarks>, 2> events_{};
-  int current_ = 0;
-  std::uint64_t steps_ = 0;
+  /// A pass may end in parts, so that there are some more than passes.
+  struct SubStepEvents {
+    std::array<cudaEvent_t, kPassCount + 4> events{};
+    std::array<PassId, kPassCount + 4> of{};
+    std::size_t count = 0;
+  };
+  void record(CallCheck& check, cudaStream_t stream) {
+    SubStepEvents& set = sets_[current_];
+    if (!check.failed()) check.ok(cudaEventRecord(set.events[set.count], stream), "cudaEventRecord");
+    set.count += 1;
+  }
+
+  std::array<SubStepEvents, 2> sets_;
+  std::size_t current_ = 0;
   StepTimes times_;
 };
 

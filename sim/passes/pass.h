@@ -56,8 +56,6 @@ struct PassEntry {
   const char* reads;  ///< columns and state, for sim/PASSES.md
   const char* writes;
   PassNeed (*need)(const SceneFacts&);
-  /// Its part of StepTimes.
-  double StepTimes::* time = &StepTimes::force;
   /// Null: the engine's part, on the bodies as they are.
   void (*run)(World::Impl&, const SubStep&) = nullptr;
 };
@@ -66,5 +64,7 @@ struct PassEntry {
 const PassEntry& entry(PassId id);
 /// The pass whose loop runs it; itself where it has its own.
 PassId runs_in(PassId id);
+/// Whether engines have a part of their own for it.
+bool on_engine(PassId id);
 
 }  // namespace slosh

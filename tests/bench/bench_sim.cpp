@@ -90,7 +90,8 @@ Result<SampledScene> sample_count(const Scene& scene, std::size_t count) {
 }
 
 struct Timing {
-  std::vector<double> total, sort, density, force, body;
+  std::vector<double> total;
+  std::array<std::vector<double>, kPassCount> pass;
 };
 
 Timing time_steps(World& world, const std::vector<HandleInput>& hands, int steps) {
@@ -99,10 +100,7 @@ Timing time_steps(World& world, const std::vector<HandleInput>& hands, int steps
     world.step(hands);
     const StepTimes& s = world.times();
     t.total.push_back(s.total);
-    t.sort.push_back(s.sort);
-    t.density.push_back(s.density);
-    t.force.push_back(s.force);
-    t.body.push_back(s.body);
+    for (std::size_t p = 0; p < kPassCount; ++p) t.pass[p].push_back(s.pass[p]);
   }
   return t;
 }
@@ -120,19 +118,21 @@ void add_timing(Table& table, const char* part, const std::string& what, const W
                 const Timing& t) {
   const double total = percentile(t.total, 0.5);
   const double fluid = static_cast<double>(world.fluid_count());
-  table.add({part,
-             what,
-             {{"step_p50_ms", 1e3 * total},
-              {"step_p99_ms", 1e3 * percentile(t.total, 0.99)},
-              {"step_min_ms", 1e3 * percentile(t.total, 0.0)},
-              {"ns_per_particle", 1e9 * total / fluid},
-              {"sort_percent", 100.0 * percentile(t.sort, 0.5) / total},
-              {"density_percent", 100.0 * percentile(t.density, 0.5) / total},
-              {"force_percent", 100.0 * percentile(t.force, 0.5) / total},
-              {"body_percent", 100.0 * percentile(t.body, 0.5) / total},
-              {"steps_per_s", 1.0 / total},
-              {"dt_ms", 1e3 * world.plan().time_step},
-              {"real_time_factor", world.plan().time_step / total}}});
+  Row row{part,
+          what,
+          {{"step_p50_ms", 1e3 * total},
+           {"step_p99_ms", 1e3 * percentile(t.total, 0.99)},
+           {"step_min_ms", 1e3 * percentile(t.total, 0.0)},
+           {"ns_per_particle", 1e9 * total / fluid}}};
+  for (std::size_t p = 0; p < kPassCount; ++p) {
+    const double took = percentile(t.pass[p], 0.5);
+    if (took > 0.0)
+      row.values.push_back({std::string(name(static_cast<PassId>(p))) + "_percent", 100.0 * took / total});
+  }
+  row.values.insert(row.values.end(), {{"steps_per_s", 1.0 / total},
+                                       {"dt_ms", 1e3 * world.plan().time_step},
+                                       {"real_time_factor", world.plan().time_step / total}});
+  table.add(row);
 }
 
 /// (a) A whole step of `pool`, its ball held and at rest, after the fluid has moved for a while.

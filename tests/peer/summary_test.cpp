@@ -23,6 +23,7 @@ RunSummary example() {
   s.wall = 10.5;
   s.real_time_factor = 10.0 / 10.5;
   s.step_ms = {0.8, 1.1, 3.0};
+  s.step_share = {{"sort_fluid", 0.1}, {"density", 0.3}};
   s.device_loop_us = {1000, 1040, 1900};
   s.device_scheduler = "SCHED_OTHER";
   s.rendered = true;
@@ -46,6 +47,7 @@ TEST(Summary, JsonHasEveryFieldThatIsPromised) {
   EXPECT_EQ(json["particles"]["fluid"], 2812);
   EXPECT_EQ(json["particles"]["boundary"], 13104);
   EXPECT_EQ(json["step_ms"]["p99"], 1.1);
+  EXPECT_EQ(json["step_share"]["density"], 0.3);
   EXPECT_EQ(json["device_loop_us"]["max"], 1900.0);
   EXPECT_EQ(json["device_loop_us"]["scheduler"], "SCHED_OTHER");
   EXPECT_EQ(json["render"]["frames"], 301);

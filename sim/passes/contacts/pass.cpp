@@ -13,7 +13,6 @@ constinit const PassEntry contacts_pass{
         return needed("a free body can touch another body");
       return left_out(f.free_bodies > 0 ? "no other body with a surface" : "no free body");
     },
-    .time = &StepTimes::body,
 };
 
 }  // namespace slosh::passes

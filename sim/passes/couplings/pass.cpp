@@ -15,7 +15,6 @@ constinit const PassEntry couplings_pass{
                  : needed(format("%zu grips, implicit, all of a body in one 6×6 solve (section 4.4)",
                                  f.scene.grips.size()));
     },
-    .time = &StepTimes::body,
 };
 
 }  // namespace slosh::passes

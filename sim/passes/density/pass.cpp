@@ -13,7 +13,6 @@ constinit const PassEntry density_pass{
                                   : "Eq 2 and 7, body particles counted")
                      : left_out("no fluid");
     },
-    .time = &StepTimes::density,
 };
 
 }  // namespace slosh::passes

@@ -20,7 +20,6 @@ constinit const PassEntry fluid_stress_pass{
                       : f.implicit                        ? "implicit viscosity uses Eq 9"
                                    : "thin fluid: artificial viscosity exceeds its own");
     },
-    .time = &StepTimes::density,
 };
 
 }  // namespace slosh::passes

@@ -12,12 +12,14 @@ void integrate_fluid_on_cuda(cuda::CudaState& s, const PassInputs& in) {
                      s.guards.view(s.constants.impulse_units), probes, s.report.status(), s.stream);
     s.check.launched("integration");
   }
-  s.clock.mark(cuda::PassClock::kForce, s.check, s.stream);
   // A probe's place changes before the next sort.
   s.sorted_ahead = s.probes.empty();
-  if (s.sorted_ahead) s.fluid.sort(s.step, s.space, s.check, s.stream);
+  if (s.sorted_ahead) {
+    s.clock.ended(PassId::kIntegrateFluid, s.check, s.stream);
+    s.fluid.sort(s.step, s.space, s.check, s.stream);
+    s.clock.ended(PassId::kSortFluid, s.check, s.stream);
+  }
   if (s.probes_report()) s.report.fetch(s.check, s.stream);
-  s.clock.mark(cuda::PassClock::kEnd, s.check, s.stream);
 }
 
 }  // namespace slosh::passes

@@ -14,7 +14,6 @@ constinit const PassEntry move_bodies_pass{
       return f.free_bodies > 0 ? needed(format("leap-frog for %d free bodies", f.free_bodies))
                                : left_out("every body is fixed");
     },
-    .time = &StepTimes::body,
     .run =
         [](World::Impl& w, const SubStep& step) {
           w.bodies.move(step);

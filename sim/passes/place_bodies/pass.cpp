@@ -11,7 +11,6 @@ constinit const PassEntry place_bodies_pass{
       return f.fluid && f.free_solids > 0 ? needed("free bodies carry their particles (Eq 14)")
                                           : left_out("no free body with a surface meets fluid");
     },
-    .time = &StepTimes::sort,
 };
 
 }  // namespace slosh::passes

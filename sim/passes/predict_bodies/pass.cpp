@@ -14,7 +14,6 @@ constinit const PassEntry predict_bodies_pass{
                  ? (f.fluid ? needed("fluid and free bodies are solved together") : left_out("no fluid"))
                  : left_out("nothing is solved together with the fluid");
     },
-    .time = &StepTimes::body,
     .run =
         [](World::Impl& w, const SubStep& step) {
           w.bodies.predict(w.plan(), w.body_forces(step), step, w.viscous_bodies);

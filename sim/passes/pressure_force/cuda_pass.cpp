@@ -7,7 +7,6 @@ void pressure_force_on_cuda(cuda::CudaState& s, const PassInputs& in) {
   // The wrenches first: the bodies' solve on the CPU needs them alone, and runs while the GPU goes on.
   if (plan.has(PassId::kWrenches)) cuda::find_wrenches(s);
   if (!s.probes_report()) s.report.fetch(s.check, s.stream);
-  s.clock.mark(cuda::PassClock::kWrench, s.check, s.stream);
   if (s.check.failed()) return;
   launch_force(s.step, plan, s.kinds.data(), s.fluid.sorted(), s.fixed.sorted(), s.moving.sorted(), s.stream);
   s.check.launched("forces");

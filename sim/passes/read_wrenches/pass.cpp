@@ -12,7 +12,6 @@ constinit const PassEntry read_wrenches_pass{
     .need = [](const SceneFacts& f) -> PassNeed {
       return f.fluid ? needed("bodies are solved on the processor") : left_out("no fluid");
     },
-    .time = &StepTimes::body,
     .run =
         [](World::Impl& w, const SubStep& step) {
           w.engine->wrenches(w.found);

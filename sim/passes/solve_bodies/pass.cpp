@@ -15,7 +15,6 @@ constinit const PassEntry solve_bodies_pass{
         return needed(format("Eq 13 for %d free bodies, with their couplings and contacts", f.free_bodies));
       return left_out("every body is fixed");
     },
-    .time = &StepTimes::body,
     .run =
         [](World::Impl& w, const SubStep& step) {
           w.status |= w.bodies.solve(w.plan(), w.body_forces(step), step);

@@ -11,7 +11,6 @@ constinit const PassEntry sort_fluid_pass{
       return f.fluid ? needed("cells of the support radius, so that neighbour rows are contiguous")
                      : left_out("no fluid");
     },
-    .time = &StepTimes::sort,
 };
 
 }  // namespace slosh::passes

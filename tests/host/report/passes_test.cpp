@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "sim/passes/pass.h"
 #include "tests/lab/report/scene_builder.h"
 
 namespace slosh::report {
@@ -20,7 +21,7 @@ Scene tank(double viscosity) {
   return b.scene;
 }
 
-std::vector<PassRow> rows_of(const Scene& scene) {
+PassTable table_of(const Scene& scene) {
   PassOptions options;
   options.steps = kComparedSteps;
   options.threads = 1;
@@ -28,7 +29,7 @@ std::vector<PassRow> rows_of(const Scene& scene) {
 }
 
 TEST(Passes, LeftOutOfAnInviscidTankAddNothingToIt) {
-  const std::vector<PassRow> rows = rows_of(tank(0.0));
+  const std::vector<PassRow> rows = table_of(tank(0.0)).rows;
   EXPECT_EQ(rows.front().what, "as planned");
   std::vector<std::string> names;
   for (const PassRow& row : rows) {
@@ -43,8 +44,27 @@ TEST(Passes, LeftOutOfAnInviscidTankAddNothingToIt) {
   EXPECT_TRUE(rows[static_cast<std::size_t>(wrenches)].same_bits);
 }
 
+/// Each pass that runs in a loop of its own has its time, a fused one is in another's, one left out has none.
+TEST(Passes, SharesAreOfThoseThatRunAndMakeUpTheStep) {
+  const PassTable table = table_of(tank(0.0));
+  double sum = 0.0;
+  std::vector<PassId> found;
+  for (const PassShare& each : table.shares) {
+    EXPECT_GT(each.ms, 0.0);
+    EXPECT_EQ(runs_in(each.pass), each.pass) << name(each.pass);
+    sum += each.share;
+    found.push_back(each.pass);
+  }
+  for (const PassId runs :
+       {PassId::kSortFluid, PassId::kDensity, PassId::kPressureForce, PassId::kIntegrateFluid})
+    EXPECT_NE(std::find(found.begin(), found.end(), runs), found.end()) << name(runs);
+  EXPECT_EQ(std::find(found.begin(), found.end(), PassId::kWrenches), found.end());
+  EXPECT_GT(sum, 0.5);
+  EXPECT_LT(sum, 1.05);
+}
+
 TEST(Passes, AViscosityAParticleTakesItsMemory) {
-  const std::vector<PassRow> rows = rows_of(tank(0.05));
+  const std::vector<PassRow> rows = table_of(tank(0.05)).rows;
   const auto pair = std::find_if(rows.begin(), rows.end(),
                                  [](const PassRow& r) { return r.what == "with pair_viscosity"; });
   ASSERT_NE(pair, rows.end());

@@ -1,6 +1,7 @@
 #include "tests/lab/report/passes.h"
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cmath>
 #include <functional>
@@ -63,8 +64,7 @@ double farthest(const Snapshot& a, const Snapshot& b) {
 
 }  // namespace
 
-std::vector<PassRow> measure_passes(const Scene& scene, const SampledScene& sampled,
-                                    const PassOptions& options) {
+PassTable measure_passes(const Scene& scene, const SampledScene& sampled, const PassOptions& options) {
   const Plan planned = make_plan(scene, sampled.spacing);
   std::vector<Variant> variants;
   const auto add = [&](const std::string& what, const Plan& plan,
@@ -97,6 +97,7 @@ std::vector<PassRow> measure_passes(const Scene& scene, const SampledScene& samp
   }
   // In turns, so that what else the machine does falls on all alike.
   Snapshot first, other;
+  std::array<std::vector<double>, kPassCount> parts;  // ms, of each step as planned
   for (int round = 0; round < kWarmUp + options.steps; ++round) {
     for (Variant& each : variants) {
       if (options.stopped && options.stopped()) throw Stopped();
@@ -104,7 +105,10 @@ std::vector<PassRow> measure_passes(const Scene& scene, const SampledScene& samp
       each.world.step(hands);
       if (each.after) each.after(each.world);
       const std::chrono::duration<double, std::milli> took = std::chrono::steady_clock::now() - before;
-      if (round >= kWarmUp) each.times.push_back(took.count());
+      if (round < kWarmUp) continue;
+      each.times.push_back(took.count());
+      if (&each != &variants.front()) continue;
+      for (std::size_t p = 0; p < kPassCount; ++p) parts[p].push_back(1e3 * each.world.times().pass[p]);
     }
     if (round + 1 != kComparedSteps) continue;
     variants.front().world.fill(first);
@@ -114,16 +118,20 @@ std::vector<PassRow> measure_passes(const Scene& scene, const SampledScene& samp
       each.row.same_bits = each.world.hash() == variants.front().world.hash();
     }
   }
-  std::vector<PassRow> rows;
+  PassTable table;
   for (Variant& each : variants) {
     std::vector<double> ratios;
     for (std::size_t i = 0; i < each.times.size(); ++i)
       ratios.push_back(each.times[i] / variants.front().times[i]);
     each.row.step_ms = median(each.times);
     each.row.slower = median(ratios);
-    rows.push_back(each.row);
+    table.rows.push_back(each.row);
   }
-  return rows;
+  for (std::size_t p = 0; p < kPassCount; ++p) {
+    const double ms = median(parts[p]);
+    if (ms > 0.0) table.shares.push_back({static_cast<PassId>(p), ms, ms / table.rows.front().step_ms});
+  }
+  return table;
 }
 
 }  // namespace slosh::report

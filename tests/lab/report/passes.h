@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "sim/plan.h"
 #include "tests/lab/report/trial.h"
 
 namespace slosh::report {
@@ -18,6 +19,18 @@ struct PassRow {
 };
 inline constexpr int kComparedSteps = 20;
 
+/// What a pass takes of a step as planned.
+struct PassShare {
+  PassId pass;
+  double ms = 0.0;  ///< median; of an engine's pass on a GPU the GPU's own time, which overlaps with the rest
+  double share = 0.0;  ///< of the median step
+};
+
+struct PassTable {
+  std::vector<PassRow> rows;
+  std::vector<PassShare> shares;  ///< of those that take time, in their order
+};
+
 struct PassOptions {
   int steps = 100;  ///< timed, of each variant, in turns
   Backend backend = Backend::kCpu;
@@ -27,7 +40,6 @@ struct PassOptions {
 
 /// The scene as planned first, then with each pass forced in that the plan left out and that can run, then
 /// with what only a viewer or a recording needs. Throws Refused, Stopped.
-std::vector<PassRow> measure_passes(const Scene& scene, const SampledScene& sampled,
-                                    const PassOptions& options);
+PassTable measure_passes(const Scene& scene, const SampledScene& sampled, const PassOptions& options);
 
 }  // namespace slosh::report

@@ -5,12 +5,12 @@
 #include <ctime>
 #include <memory>
 
-#include "peer/output/child_process.h"
-#include "peer/output/machine.h"
-#include "peer/output/plot.h"
 #include "peer/app/common_options.h"
 #include "peer/app/interrupt.h"
 #include "peer/app/verbs.h"
+#include "peer/output/child_process.h"
+#include "peer/output/machine.h"
+#include "peer/output/plot.h"
 #include "sim/backend.h"
 #include "sim/math/format.h"
 #include "tests/lab/verbs/report_coupling.h"
@@ -171,20 +171,20 @@ void add_report(CLI::App& app, VerbRun& chosen) {
                    : (*water ? report_coupling_water(*options) : report_coupling(*options));
     };
   });
-  CLI::App* passes = verb->add_subcommand("passes", "What a scene's step saves by what it leaves out");
+  CLI::App* passes = verb->add_subcommand(
+      "passes", "What each pass takes of a scene's step, and what it saves by what it leaves out");
   auto scene = std::make_shared<std::string>();
   auto spacing = std::make_shared<double>(0.0);
   passes->add_option("SCENE", *scene, "A shipped scene's name, or a .gltf or .glb file")->required();
   passes->add_option("--spacing", *spacing, "Metres between particles (the scene's own, else its coarsest)")
       ->check(in_range(1e-4, 1.0));
   passes->add_flag("--quick", options->quick, "20 timed steps instead of 200");
-  passes->add_option("--out", options->out, "Also write passes.csv into this folder");
+  passes->add_option("--out", options->out, "Also write passes.csv and shares.csv into this folder");
   add_machine_options(*passes, *options);
   passes->footer(
-      "Times the scene as planned, with each pass forced in that its plan left out, and with what only a "
-      "viewer or\n"
-      "a recording needs; step by step in turns, so that the ratios hold on a machine that does other things "
-      "too.\n\n"
+      "Tells each pass's share of a step as planned. Then times the scene as planned, with each pass\n"
+      "forced in that its plan left out, and with what only a viewer or a recording needs; step by step\n"
+      "in turns, so that the ratios hold on a machine that does other things too.\n\n"
       "Examples:\n  slosh report passes bucket\n  slosh report passes pour --spacing 0.008 --backend both");
   passes->callback([&chosen, options, scene, spacing] {
     chosen = [options, scene, spacing] { return report_passes(*options, *scene, *spacing); };

@@ -3,10 +3,10 @@
 #include <filesystem>
 #include <fstream>
 
-#include "peer/output/summary.h"
 #include "peer/app/interrupt.h"
 #include "peer/app/prepare.h"
 #include "peer/app/verbs.h"
+#include "peer/output/summary.h"
 #include "scenes/load.h"
 #include "sim/math/format.h"
 #include "tests/lab/report/passes.h"
@@ -16,6 +16,7 @@ namespace slosh {
 namespace {
 
 constexpr const char* kPassesTable = "passes.csv";
+constexpr const char* kSharesTable = "shares.csv";
 
 std::string agrees(const report::PassRow& row) {
   return row.same_bits ? "bitwise identical" : format("%.2g mm apart", 1e3 * row.off);
@@ -45,6 +46,7 @@ int report_passes(const ReportOptions& options, const std::string& scene_name, d
   };
   std::printf("%s at %.3g mm, %s fluid particles; %s\n\n", scene.name.c_str(), 1e3 * spacing,
               grouped(sampled.value().fluid_positions.size()).c_str(), machine_line(options).c_str());
+  std::string shares = "backend,pass,ms,share\n";
   std::string csv = "backend,what,step_ms,slower,bytes_a_particle,same_bits,off_m\n";
   for (const Backend backend : backends_of(options)) {
     report::PassOptions how;
@@ -52,9 +54,9 @@ int report_passes(const ReportOptions& options, const std::string& scene_name, d
     how.backend = backend;
     how.threads = options.threads;
     how.stopped = [] { return interrupted_by() != 0; };
-    std::vector<report::PassRow> rows;
+    report::PassTable found;
     try {
-      rows = report::measure_passes(scene, sampled.value(), how);
+      found = report::measure_passes(scene, sampled.value(), how);
     } catch (const report::Refused& refused) {
       return end_without(fail(refused.error));
     } catch (const report::Stopped&) {
@@ -62,19 +64,30 @@ int report_passes(const ReportOptions& options, const std::string& scene_name, d
     }
     std::printf("%-32s %10s %10s %16s   after %d steps\n", backend_name(backend), "step, ms", "slower",
                 "bytes a particle", report::kComparedSteps);
-    for (const report::PassRow& row : rows) {
+    for (const report::PassRow& row : found.rows) {
       std::printf("%-32s %10.3f %10.3f %16.0f   %s\n", row.what.c_str(), row.step_ms, row.slower,
                   row.bytes_a_particle, agrees(row).c_str());
       csv += format("%s,%s,%.5g,%.4f,%.0f,%d,%.4g\n", backend_name(backend), row.what.c_str(), row.step_ms,
                     row.slower, row.bytes_a_particle, row.same_bits ? 1 : 0, row.off);
     }
-    std::printf("\n");
+    std::printf("\n%-32s %10s %10s\n", "within a step as planned", "ms", "share");
+    double rest = 1.0;
+    for (const report::PassShare& each : found.shares) {
+      std::printf("%-32s %10.4f %9.1f%%\n", name(each.pass), each.ms, 100.0 * each.share);
+      shares += format("%s,%s,%.5g,%.4f\n", backend_name(backend), name(each.pass), each.ms, each.share);
+      rest -= each.share;
+    }
+    std::printf("%-32s %10.4f %9.1f%%\n\n",
+                backend == Backend::kCuda ? "beside them, less what overlaps" : "beside them",
+                rest * found.rows.front().step_ms, 100.0 * rest);
   }
   if (options.out.empty()) return kExitOk;
-  const std::filesystem::path table = std::filesystem::path(options.out) / kPassesTable;
-  std::ofstream out(table);
-  out << csv;
-  if (!out.flush()) return fail({table.string(), "cannot be written", "Is the disk full?"});
+  for (const auto& [file, text] : {std::pair{kPassesTable, csv}, std::pair{kSharesTable, shares}}) {
+    const std::filesystem::path table = std::filesystem::path(options.out) / file;
+    std::ofstream out(table);
+    out << text;
+    if (!out.flush()) return fail({table.string(), "cannot be written", "Is the disk full?"});
+  }
   return kExitOk;
 }
 
