@@ -4,11 +4,11 @@
 #include <optional>
 
 #include "net/clock.h"
-#include "peer/app/file_of_views.h"
 #include "peer/app/find_headset.h"
 #include "peer/app/interrupt.h"
 #include "peer/app/local_run.h"
 #include "peer/app/play_modes.h"
+#include "peer/app/state_folder.h"
 #include "peer/app/window_controls.h"
 #include "peer/app/window_film.h"
 #include "peer/devices/hardware.h"
