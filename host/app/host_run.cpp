@@ -1,5 +1,3 @@
-#include "host/app/host_run.h"
-
 #include <signal.h>
 #include <unistd.h>
 
@@ -8,6 +6,7 @@
 #include <cstdio>
 
 #include "host/app/host_links.h"
+#include "host/app/host_options.h"
 #include "host/app/host_supervisor.h"
 #include "host/app/hosted_run.h"
 #include "net/clock.h"
