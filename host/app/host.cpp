@@ -2,7 +2,7 @@
 #include <CLI/CLI.hpp>
 #include <memory>
 
-#include "host/app/host_run.h"
+#include "host/app/host_options.h"
 #include "host/server/console.h"
 #include "net/text/name.h"
 #include "net/wire/messages.h"
@@ -13,40 +13,34 @@ namespace slosh {
 namespace {
 
 std::string footer() {
-  return "Two links are printed: who joins by the first may take hold, who comes by the second may watch.\n"
-         "A link is all that a newcomer needs: they start slosh join or slosh watch, and paste it when "
-         "asked.\n"
-         "It carries this machine's addresses, the key by which the host is known, and a secret. Give it "
-         "only\n"
-         "to those you mean. A log of the host's does not hold it, --links FILE does, for your eyes alone.\n"
-         "Across the internet the port (UDP) must reach this machine.\n"
-         "\n"
-         "Until a grip is taken the host itself holds it where the scene has it, and the world stands still\n"
-         "until the first hand takes hold (--wait 2: the second; --wait 0: it starts at once).\n"
-         "\n"
-         "Who holds a grip sets how stiff it is. What everybody feels (pause, continue, reset, gravity, "
-         "viscosity)\n"
-         "is yours, and theirs to whom you give it: --run NAME, or `slosh links new NAME --role run`, or "
-         "the\n"
-         "console's `role`. Nobody but you may do that as often and as much as they like; `log` says who did "
-         "what.\n"
-         "\n"
-         "While it runs, type (or use `slosh links` from elsewhere):\n" +
-         console_help(Console::kHost) +
-         "\n\n"
-         "The world is saved to a file twice a second. Should a fault end it, or should it hang for a "
-         "minute,\n"
-         "it is started again from there, and peers come back by themselves (not with --checkpoint none).\n"
-         "A large world is saved less often with --checkpoint-every. After the machine went\n"
-         "down, --resume FILE does the same. Key and links are in FILE.secrets: FILE alone can be given "
-         "away.\n"
-         "\n"
-         "Examples:\n"
-         "  slosh host bucket\n"
-         "  slosh host bucket --for Ana --for Ben --wait 2 --expires 2h\n"
-         "  slosh host bucket --run Ana\n"
-         "  slosh host pour --listen 192.168.1.20:5000 --record pour.rec\n"
-         "  slosh host --resume ~/.local/state/slosh/bucket.checkpoint";
+  return R"(Two links are printed: who joins by the first may take hold, who comes by the second may watch.
+A link is all that a newcomer needs: they start slosh join or slosh watch, and paste it when asked.
+It carries this machine's addresses, the key by which the host is known, and a secret. Give it only
+to those you mean. A log of the host's does not hold it, --links FILE does, for your eyes alone.
+Across the internet the port (UDP) must reach this machine.
+
+Until a grip is taken the host itself holds it where the scene has it, and the world stands still
+until the first hand takes hold (--wait 2: the second; --wait 0: it starts at once).
+
+Who holds a grip sets how stiff it is. What everybody feels (pause, continue, reset, gravity, viscosity)
+is yours, and theirs to whom you give it: --run NAME, or `slosh links new NAME --role run`, or the
+console's `role`. Nobody but you may do that as often and as much as they like; `log` says who did what.
+
+While it runs, type (or use `slosh links` from elsewhere):
+)" + console_help(Console::kHost) +
+         R"(
+
+The world is saved to a file twice a second. Should a fault end it, or should it hang for a minute,
+it is started again from there, and peers come back by themselves (not with --checkpoint none).
+A large world is saved less often with --checkpoint-every. After the machine went
+down, --resume FILE does the same. Key and links are in FILE.secrets: FILE alone can be given away.
+
+Examples:
+  slosh host bucket
+  slosh host bucket --for Ana --for Ben --wait 2 --expires 2h
+  slosh host bucket --run Ana
+  slosh host pour --listen 192.168.1.20:5000 --record pour.rec
+  slosh host --resume ~/.local/state/slosh/bucket.checkpoint)";
 }
 
 }  // namespace

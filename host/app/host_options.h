@@ -27,4 +27,7 @@ struct HostVerbOptions : PlayOptions {
   int restarts = 0;  ///< times that its supervisor has started it again
 };
 
+/// The verb from its options to its exit code.
+int host_world(const HostVerbOptions& options);
+
 }  // namespace slosh

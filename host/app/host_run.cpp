@@ -1,13 +1,13 @@
-#include "host/app/host_run.h"
-
 #include <signal.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <array>
 #include <cstdio>
+#include <utility>
 
 #include "host/app/host_links.h"
+#include "host/app/host_options.h"
 #include "host/app/host_supervisor.h"
 #include "host/app/hosted_run.h"
 #include "net/clock.h"
@@ -48,42 +48,12 @@ void print_links(const HostedRun& run, const HostVerbOptions& options) {
   std::fflush(stdout);
 }
 
-/// Bytes a second between two looks.
-class RateOf {
- public:
-  double update(std::uint64_t total, std::int64_t now_ns) {
-    if (last_ns_ != 0 && now_ns > last_ns_ && total >= last_)
-      rate_ = static_cast<double>(total - last_) / to_seconds(now_ns - last_ns_);
-    last_ = total;
-    last_ns_ = now_ns;
-    return rate_;
-  }
-
- private:
-  std::uint64_t last_ = 0;
-  std::int64_t last_ns_ = 0;
-  double rate_ = 0.0;
-};
-
-std::string every(double seconds) {
-  char text[40];
-  std::snprintf(text, sizeof text, "every %g s", seconds);
-  return text;
-}
-
 std::string live_line(const HostProgress& progress, const ServerFigures& figures, double rate) {
-  char text[120];
-  if (progress.paused)
-    std::snprintf(text, sizeof text, "%.2f s, standing still", progress.time);
-  else
-    std::snprintf(text, sizeof text, "%.2f s, real time × %.2f, step %.2f ms", progress.time, progress.rate,
-                  progress.step_ms);
-  std::string line = text;
+  std::string line = progress.paused ? format("%.2f s, standing still", progress.time)
+                                     : format("%.2f s, real time × %.2f, step %.2f ms", progress.time,
+                                              progress.rate, progress.step_ms);
   line += "; " + (figures.who.empty() ? std::string("nobody here yet") : figures.who);
-  if (rate > 0.0) {
-    std::snprintf(text, sizeof text, "; %.0f kB/s out", 1e-3 * rate);
-    line += text;
-  }
+  if (rate > 0.0) line += format("; %.0f kB/s out", 1e-3 * rate);
   return line;
 }
 
@@ -120,13 +90,14 @@ void print_summary(const HostedRun& run, const HostReport& report, const ServerF
     else
       std::printf("saved      not: %s\n", saved.problem.c_str());
   }
-  if (!run.measured().empty())
+  const WorldFiles& files = run.files();
+  if (files.measurer())
     std::printf("measured   %s: probes.csv, and bodies.csv where there are bodies to follow\n",
-                clean_text(run.measured().string(), kMaxTextBytes).c_str());
-  if (run.exporter() != nullptr)
+                clean_text(files.folder().string(), kMaxTextBytes).c_str());
+  if (files.exporter())
     std::printf("exported   %s frames for other programs\n",
-                grouped(run.exporter()->report().frames).c_str());
-  const keep::RecordingReport& recorded = run.recording();
+                grouped(files.exporter()->report().frames).c_str());
+  const keep::RecordingReport& recorded = files.recorded();
   if (recorded.bytes > 0) {
     const std::string& why = recorded.problem.empty() ? recorded.totals.ended_early : recorded.problem;
     std::printf("recorded   %s steps, %.1f MB%s%s\n", grouped(recorded.totals.steps).c_str(),
@@ -138,8 +109,9 @@ void print_summary(const HostedRun& run, const HostReport& report, const ServerF
 // Until somebody or something ends it; tells why.
 std::string run_until_ended(HostedRun& run, const HostVerbOptions& options, Progress& progress,
                             SupervisorControl* supervision) {
-  RateOf rate;
   std::int64_t next_line_ns = 0;
+  std::int64_t counted_ns = 0;  // when bytes were ...
+  double sent = 0.0;            // ... this many
   LineInput input(progress.terminal());
   std::string trouble;
   // Who asks from elsewhere sees no status line.
@@ -168,10 +140,12 @@ std::string run_until_ended(HostedRun& run, const HostVerbOptions& options, Prog
     if (now < next_line_ns) continue;
     next_line_ns = now + kLineEvery;
     const ServerFigures figures = run.net().figures();
+    const double before = std::exchange(sent, static_cast<double>(figures.bytes_sent));
+    const std::int64_t since_ns = std::exchange(counted_ns, now);
+    const double rate = since_ns == 0 ? 0.0 : (sent - before) / to_seconds(now - since_ns);
     // First, for the end of a long line is cut off.
-    progress.update(-1.0,
-                    (trouble.empty() ? "" : "DISK: " + trouble + "; ") +
-                        live_line(run.host().progress(), figures, rate.update(figures.bytes_sent, now)));
+    progress.update(-1.0, (trouble.empty() ? "" : "DISK: " + trouble + "; ") +
+                              live_line(run.host().progress(), figures, rate));
   }
   return "the world has come to its end";
 }
@@ -182,16 +156,10 @@ int run_host(const HostVerbOptions& options, SupervisorControl* supervision) {
   if (const Result<bool> there = can_host_there(options); !there) return fail(there.error());
   Progress progress;
   Result<HostedWorld> hosted = make_hosted_world(options, progress);
-  if (!hosted) {
-    progress.end();
-    return fail(hosted.error());
-  }
+  if (!hosted) return fail(hosted.error(), progress);
   catch_interrupts();
   Result<std::unique_ptr<HostedRun>> created = HostedRun::create(hosted.value(), options, supervision);
-  if (!created) {
-    progress.end();
-    return fail(created.error());
-  }
+  if (!created) return fail(created.error(), progress);
   HostedRun& run = *created.value();
   progress.note("listening at " + run.address());
   for (const std::string& sentence : images_left_behind(hosted.value().prepared.scene))
@@ -200,7 +168,7 @@ int run_host(const HostVerbOptions& options, SupervisorControl* supervision) {
     progress.note("an earlier host's world was there: carry it on with ./slosh host --resume " +
                   run.set_aside());
   if (!run.checkpoint_file().empty())
-    progress.note("saved " + every(options.checkpoint_seconds) + " in " + run.checkpoint_file());
+    progress.note(format("saved every %g s in ", options.checkpoint_seconds) + run.checkpoint_file());
   if (supervision) supervision->can_carry_on_from(run.checkpoint_file());
   if (options.restarts == 0) print_links(run, options);
   if (run.waits()) {

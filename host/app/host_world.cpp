@@ -1,15 +1,13 @@
 #include "host/app/host_world.h"
 
 #include <algorithm>
-#include <cstdio>
 #include <limits>
 
 #include "host/keep/rebuild.h"
 #include "host/keep/secrets.h"
 #include "net/grip_start.h"
-#include "peer/app/all_left.h"
-#include "peer/app/time_estimate.h"
-#include "peer/output/summary.h"
+#include "peer/app/settle_world.h"
+#include "sim/math/format.h"
 
 namespace slosh {
 namespace {
@@ -28,12 +26,9 @@ Result<HostedWorld> start_anew(const HostVerbOptions& options, Progress& progres
   std::vector<HandleInput> hands;
   for (std::size_t i = 0; i < p.scene.grips.size(); ++i)
     hands.push_back({grip_start(p.scene, i), Twist{}, true, 1.0});
-  const Result<bool> agreed = agree_on_time(
-      *hosted.world, hands, {p.scene.settle, std::numeric_limits<double>::infinity(), true, options.agreed},
-      progress);
-  if (!agreed) return agreed.error();
-  hosted.world->settle(p.scene.settle, hands, nullptr, p.scene.settle_longest);
-  if (const std::optional<Error> nothing = all_left(*hosted.world, p.scene)) return *nothing;
+  const Result<bool> settled =
+      settle_world(*hosted.world, p, hands, std::numeric_limits<double>::infinity(), progress);
+  if (!settled) return settled.error();
   const Result<bool> saved = hosted.world->save(hosted.start);
   if (!saved) return saved.error();
   hosted.waits = options.wait > 0 && !p.scene.grips.empty();
@@ -105,9 +100,7 @@ Result<HostedWorld> carry_on(const HostVerbOptions& options, Progress& progress)
   p.plan = rebuilt.value().world.plan();
   hosted.world = std::move(rebuilt.value().world);
   hosted.state = state_of(*hosted.world, p.scene.fluids.size(), kept.state.paused, kept.state.run);
-  char text[80];
-  std::snprintf(text, sizeof text, "carries on at %.3f s", kept.time);
-  progress.note(text);
+  progress.note(format("carries on at %.3f s", kept.time));
   hosted.waits = kept.state.paused && kept.tick == 0 && kept.state.run == 0 && options.wait > 0;
   hosted.start = std::move(kept.start);
   return hosted;

@@ -60,9 +60,6 @@ Result<std::unique_ptr<HostedRun>> HostedRun::create(HostedWorld& hosted, const 
   const Result<bool> network = s.open_network(supervision);
   if (!network) return network.error();
   s.make_links();
-  const Result<bool> files = s.open_files();
-  if (!files) return files.error();
-
   HostOptions host;
   host.snapshot_rate = kTierSnapshotRate;
   host.demand = &s.demand_;
@@ -75,10 +72,7 @@ Result<std::unique_ptr<HostedRun>> HostedRun::create(HostedWorld& hosted, const 
   if (supervision != nullptr) host.pulse = &supervision->pulse();
   s.host_ = std::make_unique<Host>(std::move(*hosted.world), scene, *s.channel_, host);
   s.host_->add_tap(*s.server_);
-  if (s.checkpoint_) s.host_->add_tap(*s.checkpoint_);
-  if (s.recording_) s.host_->add_tap(*s.recording_);
-  if (s.measure_tap_) s.host_->add_tap(*s.measure_tap_);
-  if (s.export_tap_) s.host_->add_tap(*s.export_tap_);
+  if (const Result<bool> files = s.open_files(); !files) return files.error();
   return run;
 }
 
@@ -207,34 +201,16 @@ Result<bool> HostedRun::open_files() {
     // The first file already has everything that a newcomer needs: this may be all that there ever is.
     server_->save_state();
     options.server_state = saved_state_ = server_->state_blob();
-    auto writer = keep::CheckpointWriter::start(p.scene, p.sampled.spacing, hosted_.start, *hosted_.world,
+    auto writer = keep::CheckpointWriter::start(p.scene, p.sampled.spacing, hosted_.start, host_->world(),
                                                 hosted_.state, options);
     if (!writer) return writer.error();
     checkpoint_ = std::move(writer.value());
+    host_->add_tap(*checkpoint_);
   }
-  if (!options_.record.empty()) {
-    keep::RecordingOptions options;
-    options.file = options_.record;
-    options.version = SLOSH_VERSION;
-    options.backend = backend_name(p.backend);
-    auto writer = keep::RecordingWriter::start(p.scene, p.sampled.spacing, hosted_.start, *hosted_.world,
-                                               hosted_.state, options);
-    if (!writer) return writer.error();
-    recording_ = std::move(writer.value());
-  }
-  if (p.measure > 0.0) {
-    Result<std::unique_ptr<Measurer>> measurer = Measurer::create(p.scene, p.sampled, p.folder, p.measure);
-    if (!measurer) return measurer.error();
-    measurer_ = std::move(measurer.value());
-    measure_tap_ = std::make_unique<MeasureTap>(*measurer_);
-  }
-  if (!p.exports.empty()) {
-    Result<std::unique_ptr<Exporter>> exporter = start_export(p, p.sampled.spacing, false);
-    if (!exporter) return exporter.error();
-    exporter_ = std::move(exporter.value());
-    export_tap_ = std::make_unique<ExportTap>(*exporter_);
-  }
-  return true;
+  Result<std::unique_ptr<WorldFiles>> files = WorldFiles::create(p, p.sampled, false);
+  if (!files) return files.error();
+  files_ = std::move(files.value());
+  return files_->follow(*host_, options_.record, p.backend);
 }
 
 HostedRun::~HostedRun() {
@@ -262,9 +238,9 @@ void HostedRun::stop(const std::string& why) {
   snapshots_.reset();
   save_server_state();
   if (checkpoint_) checkpoint_->flush();
-  if (recording_) recording_report_ = recording_->finish();
-  if (measurer_) measurer_->stop();
-  if (exporter_) exporter_->stop();
+  if (!files_) return;
+  files_->finish_recording();
+  files_->stop();
 }
 
 std::vector<std::string> HostedRun::news() {
@@ -277,10 +253,10 @@ std::string HostedRun::trouble() const {
   const auto say = [&all](const char* what, const std::string& why) {
     if (!why.empty()) all += (all.empty() ? "" : "; ") + (what + why);
   };
-  if (recording_) say("the recording has ended: ", recording_->trouble());
+  if (files_->recording()) say("the recording has ended: ", files_->recording()->trouble());
   if (checkpoint_) say("the world is not saved: ", checkpoint_->report().problem);
-  if (measurer_) say("the instruments are not written: ", measurer_->problem());
-  if (exporter_) say("", exporter_->problem());
+  if (files_->measurer()) say("the instruments are not written: ", files_->measurer()->problem());
+  if (files_->exporter()) say("", files_->exporter()->problem());
   return all;
 }
 

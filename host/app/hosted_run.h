@@ -12,12 +12,10 @@
 #include "host/app/host_world.h"
 #include "host/host.h"
 #include "host/keep/checkpoint.h"
-#include "host/keep/recording.h"
 #include "host/server/console_door.h"
 #include "host/server/net_loop.h"
 #include "host/server/snapshot_coder.h"
-#include "peer/app/export_source.h"
-#include "peer/app/measure_tap.h"
+#include "peer/app/world_files.h"
 
 namespace slosh {
 
@@ -58,14 +56,9 @@ class HostedRun {
   /// Hands what changed in links and seats to the checkpoint; now and then.
   void save_server_state();
   const keep::CheckpointWriter* checkpoint() const { return checkpoint_.get(); }
-  const keep::RecordingReport& recording() const { return recording_report_; }
-  /// The folder with bodies.csv and probes.csv; empty = nothing is measured.
-  std::filesystem::path measured() const {
-    return measurer_ ? hosted_.prepared.folder : std::filesystem::path();
-  }
+  const WorldFiles& files() const { return *files_; }
   /// Whether the world stands until hands take hold (--wait).
   bool waits() const { return hosted_.waits; }
-  const Exporter* exporter() const { return exporter_.get(); }
   double coding_seconds() const { return coding_seconds_; }
 
  private:
@@ -96,16 +89,11 @@ class HostedRun {
   std::unique_ptr<Server> server_;
   std::unique_ptr<Endpoint> endpoint_;
   std::unique_ptr<keep::CheckpointWriter> checkpoint_;
-  std::unique_ptr<keep::RecordingWriter> recording_;
-  std::unique_ptr<Measurer> measurer_;  // null where nothing is measured, as its tap
-  std::unique_ptr<MeasureTap> measure_tap_;
-  std::unique_ptr<Exporter> exporter_;  // null where nothing is exported, as its tap
-  std::unique_ptr<ExportTap> export_tap_;
+  std::unique_ptr<WorldFiles> files_;
   std::unique_ptr<Host> host_;
   std::unique_ptr<SnapshotThread> snapshots_;
   std::unique_ptr<NetLoop> net_;
   std::unique_ptr<ConsoleDoor> door_;
-  keep::RecordingReport recording_report_;
   double coding_seconds_ = 0.0;
   bool stopped_ = false;
 };

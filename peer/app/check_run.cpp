@@ -6,7 +6,7 @@
 
 #include "net/clock.h"
 #include "net/grip_start.h"
-#include "peer/app/all_left.h"
+#include "peer/app/settle_world.h"
 #include "peer/app/time_estimate.h"
 #include "peer/output/summary.h"
 #include "sim/math/format.h"

@@ -3,22 +3,17 @@
 #include <CLI/CLI.hpp>
 #include <charconv>
 #include <cmath>
-#include <cstdio>
 #include <filesystem>
 
 #include "peer/output/export/export_options.h"
 #include "peer/output/plot.h"
 #include "peer/settings/key_bindings.h"
+#include "sim/math/format.h"
 
 namespace slosh {
 
 CLI::Validator in_range(double least, double most) {
-  const auto shown = [](double value) {
-    char text[32];
-    std::snprintf(text, sizeof text, "%g", value);
-    return std::string(text);
-  };
-  const std::string range = shown(least) + " to " + shown(most);
+  const std::string range = format("%g to %g", least, most);
   return CLI::Validator(
       [=](std::string& text) {
         double value = 0.0;

@@ -1,5 +1,7 @@
 // The verb `devices`: what is plugged in, what is wrong with it, what it says, and a slow push along its
 // axes.
+#include "peer/app/devices.h"
+
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
@@ -11,14 +13,11 @@
 
 #include "net/text/clean.h"
 #include "peer/app/common_options.h"
-#include "peer/app/devices_calibrate.h"
-#include "peer/app/devices_rule.h"
-#include "peer/app/devices_test.h"
 #include "peer/app/interrupt.h"
-#include "peer/app/verbs.h"
 #include "peer/devices/device_file.h"
 #include "peer/devices/hardware.h"
 #include "render/headset.h"
+#include "sim/math/format.h"
 
 namespace slosh {
 namespace {
@@ -142,9 +141,9 @@ std::string live_line(const Shown& shown, const DeviceReport& report) {
   if (!report.heard) return shown.spec + ": says nothing";
   const glm::dvec3& p = report.pose.position;
   const glm::dvec3 turn = rotation_between({1.0, 0.0, 0.0, 0.0}, report.pose.orientation);
-  char text[200];
-  std::snprintf(text, sizeof text, ": at %8.4f %8.4f %8.4f m, turned %6.3f %6.3f %6.3f rad, buttons %x%s",
-                p.x, p.y, p.z, turn.x, turn.y, turn.z, report.buttons, report.engaged ? "" : ", let go");
+  const std::string text =
+      format(": at %8.4f %8.4f %8.4f m, turned %6.3f %6.3f %6.3f rad, buttons %x%s", p.x, p.y, p.z, turn.x,
+             turn.y, turn.z, report.buttons, report.engaged ? "" : ", let go");
   const std::string status = shown.device->status();
   return shown.spec + text + (status.empty() ? "" : "; " + status);
 }

@@ -1,5 +1,3 @@
-#include "peer/app/devices_calibrate.h"
-
 #include <imgui.h>
 
 #include <CLI/CLI.hpp>
@@ -14,6 +12,7 @@
 #include "net/clock.h"
 #include "net/text/clean.h"
 #include "peer/app/common_options.h"
+#include "peer/app/devices.h"
 #include "peer/app/interrupt.h"
 #include "peer/devices/hardware.h"
 #include "peer/devices/room_tie.h"
@@ -22,6 +21,7 @@
 #include "render/context.h"
 #include "render/headset.h"
 #include "render/renderer.h"
+#include "sim/math/format.h"
 
 namespace slosh {
 namespace {
@@ -134,11 +134,8 @@ HeadsetPanel panel_before(const Pose& head) {
 
 int finish(const SharedSpace& space, const std::string& name, bool floor_known) {
   const glm::dvec3& p = space.device_in_room.position;
-  char text[160];
-  std::snprintf(text, sizeof text,
-                "The device stands at %.3f %.3f %.3f m in the room; the places fit within %.1f mm.", p.x, p.y,
-                p.z, 1e3 * space.residual);
-  say(text);
+  say(format("The device stands at %.3f %.3f %.3f m in the room; the places fit within %.1f mm.", p.x, p.y,
+             p.z, 1e3 * space.residual));
   if (!floor_known) {
     return fail({"devices calibrate", "the runtime does not know the floor: its room begins anew each time",
                  "Set up the room in the headset's own menu, and calibrate again"});

@@ -1,5 +1,3 @@
-#include "peer/app/devices_rule.h"
-
 #include <spawn.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
@@ -13,7 +11,7 @@
 #include <vector>
 
 #include "net/text/clean.h"
-#include "peer/app/verbs.h"
+#include "peer/app/devices.h"
 #include "peer/devices/hardware.h"
 #include "peer/output/child_process.h"
 #include "peer/output/whole_file.h"

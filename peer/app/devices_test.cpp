@@ -1,4 +1,4 @@
-#include "peer/app/devices_test.h"
+#include "peer/app/devices.h"
 
 #include <CLI/CLI.hpp>
 #include <cstdio>
@@ -20,17 +20,16 @@ namespace slosh {
 namespace {
 
 constexpr const char* kDevicesTestFooter =
-    "Take the handle as you would to work with it, and hold it still. Along one axis after another the "
-    "force\n"
-    "rises slowly to at most --force (turning: --torque), there and back. From how the handle gives way the\n"
-    "stiffness, damping and mass of what holds it are fitted: your arm's, or the device's own when nobody\n"
-    "does. A fit below 0.8 says that it was something else. It stops at once, with a force of zero, at\n"
-    "Ctrl-C, when the handle moves faster than 0.5 m/s, and when the device falls silent.\n"
-    "\n"
-    "Examples:\n"
-    "  slosh devices test falcon --force 2 --out falcon_test\n"
-    "  slosh devices test plugin:build/release/lib/slosh_example_device.so --torque 0\n"
-    "  slosh devices test operator:tight,correction=0";
+    R"(Take the handle as you would to work with it, and hold it still. Along one axis after another the force
+rises slowly to at most --force (turning: --torque), there and back. From how the handle gives way the
+stiffness, damping and mass of what holds it are fitted: your arm's, or the device's own when nobody
+does. A fit below 0.8 says that it was something else. It stops at once, with a force of zero, at
+Ctrl-C, when the handle moves faster than 0.5 m/s, and when the device falls silent.
+
+Examples:
+  slosh devices test falcon --force 2 --out falcon_test
+  slosh devices test plugin:build/release/lib/slosh_example_device.so --torque 0
+  slosh devices test operator:tight,correction=0)";
 
 struct TestOptions {
   std::string spec;

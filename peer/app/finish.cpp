@@ -79,4 +79,19 @@ int finish_run(const Stage& stage, const ShowOptions& options, Progress& progres
   return summary.problems.empty() ? kExitOk : kExitFailed;
 }
 
+int show_run(const Stage& stage, const MakeRun& make_run, const ShowOptions& options, bool headless,
+             HeadsetView* headset, Progress& progress) {
+  RunSummary summary;
+  if (headless) {
+    const Result<std::unique_ptr<LiveRun>> run = make_run();
+    if (!run) return fail(run.error());
+    const Result<bool> filmed = show_headless(stage, *run.value(), options, progress, summary);
+    if (!filmed) return fail(filmed.error());
+  } else {
+    const Result<bool> shown = show_in_window(stage, make_run, options, headset, progress, summary);
+    if (!shown) return fail(shown.error());
+  }
+  return finish_run(stage, options, progress, summary);
+}
+
 }  // namespace slosh

@@ -1,12 +1,12 @@
 // What the person at the hands must hear of their devices.
 #pragma once
 
-#include <cstdio>
 #include <string>
 #include <vector>
 
 #include "peer/haptics/servo.h"
 #include "scenes/scene.h"
+#include "sim/math/format.h"
 
 namespace slosh {
 
@@ -38,11 +38,10 @@ inline std::vector<std::string> hand_notes(const Scene& scene, std::size_t i, co
   const DeviceLimits limits = device.limits();
   if (!device.gives_way() || (grip.stiffness <= limits.max_stiffness && grip.damping <= limits.max_damping))
     return notes;
-  char text[160];
-  std::snprintf(text, sizeof text,
-                " asks for %.4g N/m and %.4g N·s/m, and the %s holds at most %.4g and %.3g", grip.stiffness,
-                grip.damping, device.kind().c_str(), limits.max_stiffness, limits.max_damping);
-  notes.push_back(grip.name + text +
+  notes.push_back(grip.name +
+                  format(" asks for %.4g N/m and %.4g N·s/m, and the %s holds at most %.4g and %.3g",
+                         grip.stiffness, grip.damping, device.kind().c_str(), limits.max_stiffness,
+                         limits.max_damping) +
                   ": it feels softer than the body is held. `slosh devices --help` says what decides that");
   return notes;
 }

@@ -71,4 +71,9 @@ int fail(const Error& error) {
   return kExitFailed;
 }
 
+int fail(const Error& error, Progress& progress) {
+  progress.end();
+  return fail(error);
+}
+
 }  // namespace slosh

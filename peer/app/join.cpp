@@ -38,22 +38,19 @@ constexpr const char* kFiles =
     "final.png, summary.json (with what the network was like)";
 
 constexpr const char* kJoinFiles =
-    "; and of the hands that were yours wrenches.csv,\n"
-    "poses.csv and wrenches.png.\n"
-    "\n"
-    "The link is all that is needed: the host prints it, and the scene comes over the network. It is a "
-    "secret:\n"
-    "without LINK it is asked for, and not shown while it is pasted. Breaks that a mail program put in do "
-    "no\n"
-    "harm. --link-file FILE, or standard input, does for programs. A LINK in the command line works too, and "
-    "is\n"
-    "taken out of what `ps` shows at once, but a shell remembers it.\n"
-    "\n"
-    "You are one person by the key in $XDG_DATA_HOME/slosh/peer_key: when contact is lost, you get your "
-    "place\n"
-    "and your grips back, also after this program was ended and started again, within a minute.\n"
-    "\n"
-    "While it runs, type in the terminal:\n";
+    R"(; and of the hands that were yours wrenches.csv,
+poses.csv and wrenches.png.
+
+The link is all that is needed: the host prints it, and the scene comes over the network. It is a secret:
+without LINK it is asked for, and not shown while it is pasted. Breaks that a mail program put in do no
+harm. --link-file FILE, or standard input, does for programs. A LINK in the command line works too, and is
+taken out of what `ps` shows at once, but a shell remembers it.
+
+You are one person by the key in $XDG_DATA_HOME/slosh/peer_key: when contact is lost, you get your place
+and your grips back, also after this program was ended and started again, within a minute.
+
+While it runs, type in the terminal:
+)";
 
 constexpr const char* kJoinEnd =
     "\n\n"
@@ -148,11 +145,8 @@ int join(JoinOptions options) {
   RemoteVisit visit(remote, connect_by(link.value(), key.value().identity));
   const Result<bool> came = wait_for_world(visit, progress);
   if (!came) {
-    progress.end();
-    const int signal_number = interrupted_by();
-    if (signal_number == 0) return fail(came.error());
-    fail(came.error());
-    return 128 + signal_number;
+    const int code = fail(came.error(), progress);
+    return interrupted_by() == 0 ? code : 128 + interrupted_by();
   }
   const RemoteStatus status = visit.status();
   progress.note(welcome_text(status));
@@ -175,18 +169,11 @@ int join(JoinOptions options) {
   run_options.host = remote.address;
   run_options.begin_ns = begin_ns;
   run_options.tell = [&progress](const std::string& text) { progress.note(text); };
-  Result<std::unique_ptr<RemoteRun>> run = RemoteRun::create(stage, visit, run_options);
+  Result<std::unique_ptr<LiveRun>> run = RemoteRun::create(stage, visit, run_options);
   if (!run) return fail(run.error());
 
-  RunSummary summary;
-  const MakeRun make_run = [&]() -> Result<std::unique_ptr<LiveRun>> {
-    return std::unique_ptr<LiveRun>(std::move(run.value()));
-  };
-  const Result<bool> shown = headless
-                                 ? show_headless(stage, *run.value(), options, progress, summary)
-                                 : show_in_window(stage, make_run, options, headset.get(), progress, summary);
-  if (!shown) return fail(shown.error());
-  const int code = finish_run(stage, options, progress, summary);
+  const MakeRun make_run = [&run]() -> Result<std::unique_ptr<LiveRun>> { return std::move(run.value()); };
+  const int code = show_run(stage, make_run, options, headless, headset.get(), progress);
   const RemoteStatus last = visit.status();
   return last.error && code == kExitOk ? fail(*last.error) : code;
 }

@@ -185,18 +185,4 @@ std::string Measurer::problem() const {
   return probe_table_->problem();
 }
 
-void report_instruments(const Measurer* measurer, const Scene& scene, const SampledScene& sampled,
-                        const World& world, RunSummary& summary) {
-  if (measurer == nullptr) {
-    // One look at the end, of a run that asked for nothing.
-    summary.particles_in_solids = Instruments(scene, sampled).measure(world).in_solids;
-    return;
-  }
-  summary.particles_in_solids = measurer->in_solids();
-  summary.measured = measurer->report();
-  summary.files.emplace_back("probes.csv");
-  if (!summary.measured.bodies.empty()) summary.files.emplace_back("bodies.csv");
-  if (const std::string problem = measurer->problem(); !problem.empty()) summary.problems.push_back(problem);
-}
-
 }  // namespace slosh

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "peer/output/later_table.h"
-#include "peer/output/summary.h"
+#include "peer/output/measured.h"
 #include "sim/instruments.h"
 
 namespace slosh {
@@ -71,10 +71,5 @@ class Measurer {
   std::unique_ptr<LaterTable> body_table_;  // null where no body is followed
   std::unique_ptr<LaterTable> probe_table_;
 };
-
-/// Fills what the summary says of a run's instruments and, measured or not, of particles inside solids.
-/// `measurer` may be null.
-void report_instruments(const Measurer* measurer, const Scene& scene, const SampledScene& sampled,
-                        const World& world, RunSummary& summary);
 
 }  // namespace slosh

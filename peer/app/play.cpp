@@ -7,6 +7,7 @@
 #include "peer/app/common_options.h"
 #include "peer/app/find_headset.h"
 #include "peer/app/interrupt.h"
+#include "peer/app/local_run.h"
 #include "peer/app/play_modes.h"
 #include "peer/app/verbs.h"
 #include "render/context.h"
@@ -15,26 +16,24 @@ namespace slosh {
 namespace {
 
 constexpr const char* kPlayFooter =
-    "Without a display, or with --headless, the run becomes a film. DIR gets\n"
-    "  wrenches.csv   time_s,device,fx_n,fy_n,fz_n,tx_nm,ty_nm,tz_nm: simulated time, device from 0, and "
-    "the\n"
-    "                 wrench on the hand (what is felt: a held weight is negative fy), torque about the\n"
-    "                 handle, world axes, y up\n"
-    "  poses.csv      where the handles were; --device replay:FILE plays it again\n"
-    "  bodies.csv, probes.csv   what the scene's instruments read, see --measure\n"
-    "  wrenches.png   forces above, torques below, one colour a device; --plot svg or pdf for a paper\n"
-    "  frames/        what --export asks for, numbered by time\n"
-    "  view.mp4, final.png, summary.json\n"
-    "\n"
-    "In the window the mouse takes over what scripts hold: drag a thing (with all its hands) or one handle, "
-    "the\n"
-    "wheel tilts and pours, Ctrl tilts any way, Shift goes over the table; B gives the hands back. "
-    "Elsewhere\n"
-    "left drag turns the camera, the wheel zooms. Space pauses, N takes one step, Down and Up slow motion,\n"
-    "Tab sliders, P keeps the picture, R starts again, H shows all keys, Esc ends. Ctrl-C ends a run in\n"
-    "order, with everything written (exit code 130).\n"
-    "\n"
-    "While it runs, type in the terminal, or through a pipe:\n";
+    R"(Without a display, or with --headless, the run becomes a film. DIR gets
+  wrenches.csv   time_s,device,fx_n,fy_n,fz_n,tx_nm,ty_nm,tz_nm: simulated time, device from 0, and the
+                 wrench on the hand (what is felt: a held weight is negative fy), torque about the
+                 handle, world axes, y up
+  poses.csv      where the handles were; --device replay:FILE plays it again
+  bodies.csv, probes.csv   what the scene's instruments read, see --measure
+  wrenches.png   forces above, torques below, one colour a device; --plot svg or pdf for a paper
+  frames/        what --export asks for, numbered by time
+  view.mp4, final.png, summary.json
+
+In the window the mouse takes over what scripts hold: drag a thing (with all its hands) or one handle, the
+wheel tilts and pours, Ctrl tilts any way, Shift goes over the table; B gives the hands back. Elsewhere
+left drag turns the camera, the wheel zooms. Space pauses, N takes one step, Down and Up slow motion,
+Tab sliders, P keeps the picture, R starts again, H shows all keys, Esc ends. Ctrl-C ends a run in
+order, with everything written (exit code 130).
+
+While it runs, type in the terminal, or through a pipe:
+)";
 
 constexpr const char* kExamples =
     "\n\n"
@@ -53,16 +52,19 @@ int play(PlayOptions options) {
   if (headset) options.controllers = headset->link();
   const bool headless = is_film(options, headset != nullptr, progress);
   Result<Prepared> prepared = prepare(options, headless, progress);
-  if (!prepared) {
-    progress.end();
-    return fail(prepared.error());
-  }
-  RunSummary summary;
-  const Result<bool> played =
-      headless ? play_headless(prepared.value(), options, progress, summary)
-               : play_in_window(prepared.value(), options, headset.get(), progress, summary);
-  if (!played) return fail(played.error());
-  return finish_run(prepared.value(), options, progress, summary);
+  if (!prepared) return fail(prepared.error(), progress);
+  const Prepared& p = prepared.value();
+  const MakeRun make_run = [&]() -> Result<std::unique_ptr<LiveRun>> {
+    Result<DeviceSet> devices = make_devices(p.scene, options.devices, !headless, options.controllers);
+    if (!devices) return devices.error();
+    if (headless) progress.phase(p.scene.settle > 0.0 ? "settling" : "starting");
+    const double film_rate = options.render ? options.frames_per_second : 0.0;
+    auto run =
+        LocalRun::create(p, std::move(devices.value()), headless ? film_rate : kWindowSnapshotRate, progress);
+    if (run) catch_interrupts();
+    return run;
+  };
+  return show_run(p, make_run, options, headless, headset.get(), progress);
 }
 
 }  // namespace

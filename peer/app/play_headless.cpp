@@ -1,19 +1,19 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <cstdio>
 #include <cstdlib>
 #include <memory>
 #include <optional>
 #include <thread>
 
 #include "peer/app/interrupt.h"
-#include "peer/app/local_run.h"
 #include "peer/app/play_modes.h"
+#include "peer/app/run_report.h"
 #include "peer/view/headless_view.h"
 #include "render/color/display_transform.h"
 #include "render/environment.h"
 #include "render/hud_scale.h"
+#include "sim/math/format.h"
 
 namespace slosh {
 namespace {
@@ -29,47 +29,22 @@ void fill_view(RunSummary& summary, const HeadlessView& view, const ViewOptions&
   summary.height = options.render.height;
   summary.frames = report.frames;
   summary.frames_dropped = dropped;
-  summary.frame_ms = {1e3 * report.frame_time.percentile(0.5), 1e3 * report.frame_time.percentile(0.99),
-                      1e3 * report.frame_time.max()};
+  summary.frame_ms = spread_of(report.frame_time, 1e3);
   if (report.frames > 0) {
     if (report.problem.empty()) summary.files.insert(summary.files.end(), {"view.mp4", "final.png"});
   }
   if (!report.problem.empty()) summary.problems.push_back("the film: " + report.problem);
 }
 
-}  // namespace
-
+/// "3.20 s of 10.00 s, real time × 0.98, devices 1000 Hz".
 std::string running_text(const Rates& rates, double seconds) {
-  char text[400];
-  int used = std::snprintf(text, sizeof text, "%.2f s", rates.time - rates.start);
-  const auto add = [&](const char* pattern, auto... values) {
-    used += std::snprintf(text + used, sizeof text - static_cast<std::size_t>(used), pattern, values...);
-    used = std::min(used, static_cast<int>(sizeof text) - 1);
-  };
-  if (seconds < 1e9) add(" of %.2f s", seconds);
-  if (rates.real_time > 0.0) add(", real time × %.2f", rates.real_time);
-  if (rates.step_ms > 0.0) add(", step %.2f ms", rates.step_ms);
-  if (rates.device_rate > 0.0) add(", devices %.0f Hz", rates.device_rate);
-  if (!rates.connection.empty()) add(", %s", rates.connection.c_str());
-  return text;
+  std::string text = format("%.2f s", rates.time - rates.start);
+  if (seconds < 1e9) text += format(" of %.2f s", seconds);
+  if (rates.real_time > 0.0) text += format(", real time × %.2f", rates.real_time);
+  if (rates.step_ms > 0.0) text += format(", step %.2f ms", rates.step_ms);
+  if (rates.device_rate > 0.0) text += format(", devices %.0f Hz", rates.device_rate);
+  return rates.connection.empty() ? text : text + ", " + rates.connection;
 }
-
-void hear_lines(LiveRun& run, LineInput* input, Progress& progress) {
-  if (!input) return;
-  for (const std::string& line : input->read())
-    progress.answer(input->edits() ? line : std::string(), run.hear(line));
-  progress.typed(input->typed());
-}
-
-void TroubleTeller::tell(const LiveRun& run, Progress& progress) {
-  const std::string trouble = run.trouble();
-  if (trouble == told_) return;
-  told_ = trouble;
-  if (trouble.empty()) return progress.note("slosh: what was out of order is in use again");
-  progress.note("slosh: " + trouble + "; the run goes on");
-}
-
-namespace {
 
 ColorConfig chosen_colors(const ShowOptions& options, Progress& progress) {
   ColorConfig asked{options.ocio, options.display, options.view};
@@ -98,6 +73,33 @@ std::shared_ptr<const Environment> chosen_environment(const ShowOptions& options
 }
 
 }  // namespace
+
+RunTerminal::RunTerminal(const Stage& stage, LiveRun& run, Progress& progress)
+    : stage_(stage), run_(run), progress_(progress) {
+  if (run.hears()) input_.emplace(progress.terminal());
+}
+
+void RunTerminal::wait(std::chrono::milliseconds patience) const {
+  if (input_) return input_->wait(patience);
+  std::this_thread::sleep_for(patience);
+}
+
+Rates RunTerminal::turn() {
+  if (input_) {
+    for (const std::string& line : input_->read())
+      progress_.answer(input_->edits() ? line : std::string(), run_.hear(line));
+    progress_.typed(input_->typed());
+  }
+  if (const std::string trouble = run_.trouble(); trouble != trouble_) {
+    trouble_ = trouble;
+    progress_.note("slosh: " + (trouble.empty() ? "what was out of order is in use again"
+                                                : trouble + "; the run goes on"));
+  }
+  const Rates rates = run_.note_rates();
+  progress_.update(std::isfinite(stage_.seconds) ? (rates.time - rates.start) / stage_.seconds : -1.0,
+                   running_text(rates, stage_.seconds));
+  return rates;
+}
 
 RenderOptions picture_options(const Stage& stage, const ShowOptions& options, Progress& progress) {
   RenderOptions render;
@@ -147,24 +149,15 @@ Result<bool> show_headless(const Stage& stage, LiveRun& run, const ShowOptions& 
 
   progress.phase("running");
   run.start();
-  std::optional<LineInput> input;
-  if (run.hears()) input.emplace(progress.terminal());
-  TroubleTeller trouble;
-  while (run.running()) {
-    if (input)
-      input->wait(kTurn);
-    else
-      std::this_thread::sleep_for(kTurn);
-    hear_lines(run, input ? &*input : nullptr, progress);
-    for (const std::string& line : run.take_notices()) progress.note(line);
-    trouble.tell(run, progress);
-    const Rates rates = run.note_rates();
-    progress.update(std::isfinite(stage.seconds) ? (rates.time - rates.start) / stage.seconds : -1.0,
-                    running_text(rates, stage.seconds));
-    if (interrupted_by() != 0) run.request_stop();
+  {
+    RunTerminal terminal(stage, run, progress);
+    while (run.running()) {
+      terminal.wait(kTurn);
+      terminal.turn();
+      for (const std::string& line : run.take_notices()) progress.note(line);
+      if (interrupted_by() != 0) run.request_stop();
+    }
   }
-  progress.typed("");
-  input.reset();
   if (run.exports_waiting() > 0) progress.phase("writing frames");
   for (std::size_t left = run.exports_waiting(); left > 0; left = run.exports_waiting()) {
     progress.update(-1.0, std::to_string(left) + " frames left");
@@ -188,19 +181,6 @@ Result<bool> show_headless(const Stage& stage, LiveRun& run, const ShowOptions& 
     if (!view->report().refused.empty()) progress.note("slosh: " + view->report().refused);
   }
   return true;
-}
-
-Result<bool> play_headless(const Prepared& prepared, const PlayOptions& options, Progress& progress,
-                           RunSummary& summary) {
-  Result<DeviceSet> devices = make_devices(prepared.scene, options.devices, false);
-  if (!devices) return devices.error();
-  progress.phase(prepared.scene.settle > 0.0 ? "settling" : "starting");
-  const double snapshot_rate = options.render ? options.frames_per_second : 0.0;
-  Result<std::unique_ptr<LocalRun>> created =
-      LocalRun::create(prepared, std::move(devices.value()), snapshot_rate, &progress);
-  if (!created) return created.error();
-  catch_interrupts();
-  return show_headless(prepared, *created.value(), options, progress, summary);
 }
 
 }  // namespace slosh

@@ -1,8 +1,11 @@
 // The two ways to watch a run: a film without a display, or a window.
 #pragma once
 
+#include <chrono>
 #include <functional>
 #include <memory>
+#include <optional>
+#include <string>
 
 #include "peer/app/live_run.h"
 #include "peer/app/play_options.h"
@@ -20,37 +23,45 @@ constexpr double kWindowSnapshotRate = 60.0;
 Result<bool> show_headless(const Stage& stage, LiveRun& run, const ShowOptions& options, Progress& progress,
                            RunSummary& summary);
 
-/// Makes a run, also each time that the user starts again and the run cannot do that in place.
+/// Makes the run that is shown. Errors: as the run's own.
 using MakeRun = std::function<Result<std::unique_ptr<LiveRun>>()>;
 /// The same in a window, until it is closed or the run ends, or in a headset, beside which the window is a
-/// mirror and may be missing; `headset` is null without one. Errors: no window, and what `make_run` has.
+/// mirror and may be missing; `headset` is null without one. The run is made once there is a window. Errors:
+/// no window, and what `make_run` has.
 Result<bool> show_in_window(const Stage& stage, const MakeRun& make_run, const ShowOptions& options,
                             HeadsetView* headset, Progress& progress, RunSummary& summary);
 
-/// A world in this process, as a film or in a window.
-Result<bool> play_headless(const Prepared& prepared, const PlayOptions& options, Progress& progress,
-                           RunSummary& summary);
-Result<bool> play_in_window(const Prepared& prepared, const PlayOptions& options, HeadsetView* headset,
-                            Progress& progress, RunSummary& summary);
+/// One of the two, then the run's plot and summary (finish_run). Returns the exit code.
+int show_run(const Stage& stage, const MakeRun& make_run, const ShowOptions& options, bool headless,
+             HeadsetView* headset, Progress& progress);
 
 /// What the renderer is asked for: the stage's size, the surface and the colours that were chosen. A colour
 /// configuration that cannot be used is told, and the built-in transform goes on.
 RenderOptions picture_options(const Stage& stage, const ShowOptions& options, Progress& progress);
 
-/// Lines typed at a run go to it, their answers to stdout; nothing where the run hears none. Does not wait.
-void hear_lines(LiveRun& run, LineInput* input, Progress& progress);
-
-/// Tells once, when it begins and when it is over, what is wrong with the run's files or devices.
-class TroubleTeller {
+/// The terminal beside a run that is shown.
+class RunTerminal {
  public:
-  void tell(const LiveRun& run, Progress& progress);
+  /// All must outlive it.
+  RunTerminal(const Stage& stage, LiveRun& run, Progress& progress);
+  ~RunTerminal() { progress_.typed(""); }
+  RunTerminal(const RunTerminal&) = delete;
+  RunTerminal& operator=(const RunTerminal&) = delete;
+
+  /// Waits for lines where the run hears any; at most so long.
+  void wait(std::chrono::milliseconds patience) const;
+  /// Lines that were typed go to the run, their answers to stdout. What is wrong with its files or devices is
+  /// told once, when it begins and when it is over. Last, how far the run is. Returns its rates; does not
+  /// wait.
+  Rates turn();
 
  private:
-  std::string told_;
+  const Stage& stage_;
+  LiveRun& run_;
+  Progress& progress_;
+  std::optional<LineInput> input_;
+  std::string trouble_;  // as it was told
 };
-
-/// "3.20 s of 10.00 s, real time × 0.98, devices 1000 Hz".
-std::string running_text(const Rates& rates, double seconds);
 
 /// Plot and summary, from what the run left in the folder. Returns the exit code.
 int finish_run(const Stage& stage, const ShowOptions& options, Progress& progress, RunSummary& summary);

@@ -4,11 +4,11 @@
 #include <optional>
 
 #include "net/clock.h"
-#include "peer/app/file_of_views.h"
 #include "peer/app/find_headset.h"
 #include "peer/app/interrupt.h"
-#include "peer/app/local_run.h"
 #include "peer/app/play_modes.h"
+#include "peer/app/run_report.h"
+#include "peer/app/state_folder.h"
 #include "peer/app/window_controls.h"
 #include "peer/app/window_film.h"
 #include "peer/devices/hardware.h"
@@ -19,8 +19,6 @@
 
 namespace slosh {
 namespace {
-
-enum class Outcome { kEnd, kAgain };
 
 /// Where a picture or table that somebody wants to keep goes: with the run's files, else here. `what`:
 /// "picture".
@@ -35,7 +33,7 @@ std::filesystem::path free_name(const Stage& stage, const std::string& what, con
   }
 }
 
-/// Shows one run until it ends or the user wants another.
+/// Shows a run until it ends or the user wants no more of it.
 class WindowRun {
  public:
   /// `headset`: null without one.
@@ -72,23 +70,20 @@ class WindowRun {
     progress_.phase("running");
   }
 
-  Outcome show(Histogram& frame_time, std::uint64_t& frames) {
+  void show(Histogram& frame_time, std::uint64_t& frames) {
     SnapshotPointer snapshot;
-    std::optional<LineInput> typed;
-    TroubleTeller trouble;
-    if (run_.hears()) typed.emplace(progress_.terminal());
+    RunTerminal terminal(stage_, run_, progress_);
     while (true) {
       InputState input = context_.poll();
       if (worn_) {  // the window shows what an eye sees: not where a pointer would be
         input.buttons.fill(false);
         input.scroll = glm::vec2(0.0f);
       }
-      if (context_.should_close() || interrupted_by() != 0) return Outcome::kEnd;
+      if (context_.should_close() || interrupted_by() != 0) return;
       const glm::ivec2 picture = glm::max(context_.framebuffer_size(), glm::ivec2(1));
       const WindowControls::Wish wish =
           controls_.follow(input, picture, snapshot ? &snapshot->rigid : nullptr);
-      if (wish == WindowControls::Wish::kEnd) return Outcome::kEnd;
-      if (wish == WindowControls::Wish::kAgain) return Outcome::kAgain;
+      if (wish == WindowControls::Wish::kEnd) return;
       if (RenderOptions render = renderer_.options(); render.bilateral_iterations != controls_.filter) {
         render.bilateral_iterations = controls_.filter;
         if (const Result<bool> set = renderer_.set_options(render); !set) controls_.say(set.error().text());
@@ -96,22 +91,18 @@ class WindowRun {
       painter_.hud().paused = run_.paused();
       const OrbitCamera& camera = painter_.camera();
       run_.look_from(camera_axes(camera.eye(), camera.target()));
-      hear_lines(run_, typed ? &*typed : nullptr, progress_);
-      trouble.tell(run_, progress_);
       if (SnapshotPointer newest = run_.newest_snapshot()) {
         snapshot = std::move(newest);
         painter_.record(*snapshot);
         controls_.record(*snapshot);
       }
-      const Rates rates = run_.note_rates();
-      progress_.update(std::isfinite(stage_.seconds) ? (rates.time - rates.start) / stage_.seconds : -1.0,
-                       running_text(rates, stage_.seconds));
-      if (!run_.running()) return Outcome::kEnd;
+      const Rates rates = terminal.turn();
+      if (!run_.running()) return;
 
       if (headset_) {
         const HeadsetView::Turn turn =
             headset_->turn([&](const HeadsetPictures& p) { draw_eyes(p, snapshot, rates, frame_time); });
-        if (turn == HeadsetView::Turn::kEnded) return Outcome::kEnd;
+        if (turn == HeadsetView::Turn::kEnded) return;
         if (worn_ != (turn == HeadsetView::Turn::kDrawn)) context_.follow_screen(worn_);
         worn_ = turn == HeadsetView::Turn::kDrawn;
         if (worn_) {
@@ -233,50 +224,27 @@ Result<bool> show_in_window(const Stage& stage, const MakeRun& make_run, const S
   WindowFilm film(stage.folder, options.frames_per_second);
   progress.phase("running", context.value()->has_window() ? "(H in the window for help)" : "(Ctrl-C ends)");
 
-  Outcome outcome = Outcome::kAgain;
-  while (outcome == Outcome::kAgain) {
-    // A fresh renderer a run: it has no way to give meshes back.
-    Result<std::unique_ptr<Renderer>> renderer = Renderer::create(*context.value(), render);
-    if (!renderer) return renderer.error();
-    Result<std::unique_ptr<LiveRun>> made = make_run();
-    if (!made) return made.error();
-    LiveRun& run = *made.value();
-    WindowRun window(stage, run, *context.value(), *renderer.value(), headset, film, keys.value(), progress);
-    window.wait_for_headset();
-    run.start();
-    outcome = window.show(frame_time, summary.frames);
-    progress.typed("");
-    run.stop();
-    if (outcome != Outcome::kEnd) continue;
-    run.report(summary);
-    summary.rendered = true;
-    summary.renderer = context.value()->description() + where_particles_are_read(*renderer.value());
-    const RenderOptions& last = renderer.value()->options();
-    const glm::ivec2 shown =
-        headset ? glm::ivec2(last.width, last.height) : context.value()->framebuffer_size();
-    summary.width = shown.x;
-    summary.height = shown.y;
-    summary.frame_ms = {1e3 * frame_time.percentile(0.5), 1e3 * frame_time.percentile(0.99),
-                        1e3 * frame_time.max()};
-  }
+  Result<std::unique_ptr<Renderer>> renderer = Renderer::create(*context.value(), render);
+  if (!renderer) return renderer.error();
+  Result<std::unique_ptr<LiveRun>> made = make_run();
+  if (!made) return made.error();
+  LiveRun& run = *made.value();
+  WindowRun window(stage, run, *context.value(), *renderer.value(), headset, film, keys.value(), progress);
+  window.wait_for_headset();
+  run.start();
+  window.show(frame_time, summary.frames);
+  run.stop();
+  run.report(summary);
+  summary.rendered = true;
+  summary.renderer = context.value()->description() + where_particles_are_read(*renderer.value());
+  const RenderOptions& last = renderer.value()->options();
+  const glm::ivec2 shown =
+      headset ? glm::ivec2(last.width, last.height) : context.value()->framebuffer_size();
+  summary.width = shown.x;
+  summary.height = shown.y;
+  summary.frame_ms = spread_of(frame_time, 1e3);
   film.finish(summary);
   return true;
-}
-
-Result<bool> play_in_window(const Prepared& prepared, const PlayOptions& options, HeadsetView* headset,
-                            Progress& progress, RunSummary& summary) {
-  bool told = false;
-  const MakeRun make_run = [&]() -> Result<std::unique_ptr<LiveRun>> {
-    Result<DeviceSet> devices = make_devices(prepared.scene, options.devices, true, options.controllers);
-    if (!devices) return devices.error();
-    Result<std::unique_ptr<LocalRun>> run = LocalRun::create(prepared, std::move(devices.value()),
-                                                             kWindowSnapshotRate, told ? nullptr : &progress);
-    if (!run) return run.error();
-    told = true;
-    catch_interrupts();
-    return std::unique_ptr<LiveRun>(std::move(run.value()));
-  };
-  return show_in_window(prepared, make_run, options, headset, progress, summary);
 }
 
 }  // namespace slosh

@@ -6,7 +6,6 @@
 #include <cerrno>
 #include <charconv>
 #include <cmath>
-#include <cstdio>
 #include <limits>
 #include <optional>
 #include <system_error>
@@ -14,12 +13,13 @@
 
 #include "host/auto_spacing.h"
 #include "host/keep/recording.h"
-#include "peer/app/kept_spacing.h"
 #include "peer/app/measurer.h"
+#include "peer/app/state_folder.h"
 #include "peer/app/time_estimate.h"
 #include "peer/haptics/make_device.h"
 #include "peer/output/summary.h"
 #include "scenes/load.h"
+#include "sim/math/format.h"
 
 namespace slosh {
 namespace {
@@ -233,9 +233,7 @@ Result<Prepared> prepare(const PlayOptions& options, bool headless, Progress& pr
   const Result<Spacing> spacing = choose(p.scene, options, asked.value(), p.threads, p.backend, progress);
   if (!spacing) return spacing.error();
   p.spacing_reason = spacing.value().reason;
-  char text[32];
-  std::snprintf(text, sizeof text, "%.2f mm", 1e3 * spacing.value().metres);
-  progress.note(std::string("spacing ") + text + ": " + p.spacing_reason);
+  progress.note(format("spacing %.2f mm: ", 1e3 * spacing.value().metres) + p.spacing_reason);
 
   progress.phase("sampling");
   Result<SampledScene> sampled = sample_told(p.scene, spacing.value().metres, progress);

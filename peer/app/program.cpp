@@ -16,20 +16,50 @@
 #include <initializer_list>
 #include <memory>
 #include <span>
+#include <sstream>
 #include <string>
 #include <vector>
 
 #include "net/text/clean.h"
 #include "net/text/nearest.h"
-#include "peer/app/settings_in_force.h"
 #include "peer/app/uncaught.h"
 #include "peer/app/verbs.h"
-#include "peer/app/wrapped_help.h"
 #include "peer/install/version.h"
 #include "peer/remote/link_source.h"
+#include "peer/settings/settings.h"
 
 namespace slosh {
 namespace {
+
+constexpr std::size_t kHelpLine = 110;  // bytes, as the launcher's own help
+
+/// `text` in lines of at most `width` bytes where its words allow; breaks that it has are not kept.
+std::string wrapped_words(const std::string& text, std::size_t width) {
+  std::istringstream words(text);
+  std::string all;
+  std::size_t used = 0;
+  for (std::string word; words >> word;) {
+    if (used > 0 && used + 1 + word.size() > width) {
+      all += '\n';
+      used = 0;
+    } else if (used > 0) {
+      all += ' ';
+      ++used;
+    }
+    all += word;
+    used += word.size();
+  }
+  return all;
+}
+
+/// CLI11's own --help, its column of explanations in lines of a width that terminals have.
+class WrappedHelp : public CLI::Formatter {
+ public:
+  std::string make_option_desc(const CLI::Option* option) const override {
+    return wrapped_words(CLI::Formatter::make_option_desc(option),
+                         kHelpLine - std::min(kHelpLine / 2, get_column_width()));
+  }
+};
 
 /// Options of `app` whose names are near to words that it did not know: "--headless, --seconds".
 std::string options_near(const CLI::App& app, const std::vector<std::string>& words) {

@@ -6,12 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "peer/app/hand_trouble.h"
 #include "peer/app/live_run.h"
 #include "peer/app/prepare.h"
-#include "peer/haptics/device_loop.h"
-#include "peer/haptics/make_device.h"
-#include "peer/output/recorder.h"
 #include "peer/remote/remote_visit.h"
 
 namespace slosh {
@@ -30,9 +26,9 @@ class RemoteRun final : public LiveRun {
  public:
   /// `stage` and `visit`, which is live, must outlive it. Errors: a file cannot be written, a device of a
   /// grip that is held already cannot be used.
-  static Result<std::unique_ptr<RemoteRun>> create(const Stage& stage, RemoteVisit& visit,
-                                                   RemoteRunOptions options);
-  ~RemoteRun() override;
+  static Result<std::unique_ptr<LiveRun>> create(const Stage& stage, RemoteVisit& visit,
+                                                 RemoteRunOptions options);
+  ~RemoteRun() override { stop(); }
 
   void start() override;
   void request_stop() override { stopping_ = true; }
@@ -41,38 +37,27 @@ class RemoteRun final : public LiveRun {
   SnapshotQueue& snapshots() override { return visit_.world().channel->snapshots(); }
   SnapshotPointer newest_snapshot() override;
   HudFacts facts(double picture_rate) const override;
-  Rates note_rates() override;
-  RateLog& rates() override { return rates_; }
-  void pause(bool paused) override;
   bool paused() const override { return status_.world.paused; }
-  bool start_again() override;
-  void change_grip() override;
   bool hears() const override { return true; }
-  std::string hear(const std::string& line) override;
-  MouseTarget* mouse_target(std::size_t i) override { return mice_[i].get(); }
-  SharedHandle* lent_hand(std::size_t i) override { return lent_[i].get(); }
   LiveValues live_values() const override;
-  void change(const LiveWish& wish) override;
-  void look_from(const glm::dquat& axes) override { servo_->look_from(axes); }
-  std::string trouble() const override { return run_trouble(recorder_->problem(), *servo_, stage_.scene); }
   void report(RunSummary& summary) const override;
 
  private:
   RemoteRun(const Stage& stage, RemoteVisit& visit, RemoteRunOptions options);
-  Result<bool> follow_grips();
-  void let_go(std::size_t grip, const Error& why);
+  OwnHands* hands() const override { return hands_.get(); }
+  Rates world_rates() override;
+  PeerLine understand(const std::string& line) override;
+  void ask(const RemoteCommand& command, bool) override { visit_.ask(command); }
+  void look_at_world();
   void follow_time();
+  Result<bool> follow_grips();
+  Result<HandDevice> hand_for(std::size_t grip, const std::string& spec) const;
 
   const Stage& stage_;
   RemoteVisit& visit_;
   RemoteRunOptions options_;
   RemoteStatus status_;
-  std::unique_ptr<Servo> servo_;
-  std::unique_ptr<DeviceLoop> loop_;
-  std::unique_ptr<Recorder> recorder_;
-  RateLog rates_;
-  std::vector<std::shared_ptr<MouseTarget>> mice_;
-  std::vector<std::shared_ptr<SharedHandle>> lent_;
+  std::unique_ptr<OwnHands> hands_;
   std::vector<bool> device_on_;  // grips that have a device now
   std::size_t grips_taken_ = 0;  // ever
   SnapshotPointer last_snapshot_;

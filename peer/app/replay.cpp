@@ -21,18 +21,16 @@ struct ReplayVerbOptions : ShowOptions {
 };
 
 constexpr const char* kReplayFooter =
-    "The world is simulated again from the recorded inputs, as fast as it goes. On the backend that it was\n"
-    "recorded on, every hash is compared: \"84 of 84 hashes agree\", or the first tick that differs and "
-    "exit\n"
-    "code 1. On another one bodies are compared within a spacing. With --out, DIR gets what `slosh play`\n"
-    "writes headless: view.mp4, final.png, wrenches.csv, wrenches.png, summary.json; wrenches are the "
-    "world's,\n"
-    "not the device loop's.\n"
-    "\n"
-    "Examples:\n"
-    "  slosh play bucket --headless --record bucket.rec\n"
-    "  slosh replay bucket.rec --no-render\n"
-    "  slosh replay bucket.rec --out out/again --size 1280x720";
+    R"(The world is simulated again from the recorded inputs, as fast as it goes. On the backend that it was
+recorded on, every hash is compared: "84 of 84 hashes agree", or the first tick that differs and exit
+code 1. On another one bodies are compared within a spacing. With --out, DIR gets what `slosh play`
+writes headless: view.mp4, final.png, wrenches.csv, wrenches.png, summary.json; wrenches are the world's,
+not the device loop's.
+
+Examples:
+  slosh play bucket --headless --record bucket.rec
+  slosh replay bucket.rec --no-render
+  slosh replay bucket.rec --out out/again --size 1280x720)";
 
 int replay(ReplayVerbOptions options) {
   end_at_interrupts();
@@ -47,10 +45,7 @@ int replay(ReplayVerbOptions options) {
   progress.phase("opening", options.file);
   Result<std::unique_ptr<keep::Replayer>> opened =
       keep::Replayer::open(options.file, {options.threads, *backend});
-  if (!opened) {
-    progress.end();
-    return fail(opened.error());
-  }
+  if (!opened) return fail(opened.error(), progress);
   keep::Replayer& replayer = *opened.value();
 
   Stage stage;
@@ -67,12 +62,9 @@ int replay(ReplayVerbOptions options) {
   const Result<bool> shown = show_headless(stage, *run.value(), options, progress, summary);
   if (!shown) return fail(shown.error());
   summary.threads = options.threads;
-  int code = finish_run(stage, options, progress, summary);
-  if (!run.value()->problem().empty()) {
-    return fail({"", run.value()->problem(), ""});
-  }
-  if (code == kExitOk && !replayer.verdict().same(replayer.head().spacing)) code = kExitFailed;
-  return code;
+  const int code = finish_run(stage, options, progress, summary);
+  if (!run.value()->problem().empty()) return fail({"", run.value()->problem(), ""});
+  return code != kExitOk || replayer.verdict().same(replayer.head().spacing) ? code : kExitFailed;
 }
 
 }  // namespace

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
-#include <optional>
 
 #include "net/clock.h"
 #include "peer/app/run_report.h"
@@ -27,26 +26,14 @@ ReplayRun::ReplayRun(keep::Replayer& replayer, const Stage& stage, double snapsh
 Result<std::unique_ptr<ReplayRun>> ReplayRun::create(keep::Replayer& replayer, const Stage& stage,
                                                      double snapshot_rate) {
   std::unique_ptr<ReplayRun> run(new ReplayRun(replayer, stage, snapshot_rate));
+  Result<std::unique_ptr<WorldFiles>> files = WorldFiles::create(stage, replayer.sampled(), true);
+  if (!files) return files.error();
+  run->files_ = std::move(files.value());
   if (stage.folder.empty()) return run;
   Result<std::unique_ptr<Table>> wrenches = Table::create(stage.folder / "wrenches.csv", kWrenchesHeader);
   if (!wrenches) return wrenches.error();
   run->wrenches_ = std::move(wrenches.value());
-  if (stage.measure > 0.0) {
-    Result<std::unique_ptr<Measurer>> measurer =
-        Measurer::create(stage.scene, replayer.sampled(), stage.folder, stage.measure);
-    if (!measurer) return measurer.error();
-    run->measurer_ = std::move(measurer.value());
-  }
-  if (!stage.exports.empty()) {
-    Result<std::unique_ptr<Exporter>> exporter = start_export(stage, replayer.head().spacing, true);
-    if (!exporter) return exporter.error();
-    run->exporter_ = std::move(exporter.value());
-  }
   return run;
-}
-
-ReplayRun::~ReplayRun() {
-  stop();
 }
 
 void ReplayRun::start() {
@@ -57,7 +44,7 @@ void ReplayRun::start() {
 void ReplayRun::stop() {
   request_stop();
   if (thread_.joinable()) thread_.join();
-  if (exporter_) exporter_->stop();
+  if (files_) files_->stop();
   snapshots_.close();
 }
 
@@ -95,11 +82,8 @@ void ReplayRun::write_samples() {
 void ReplayRun::run() {
   const std::int64_t begin_ns = steady_now_ns();
   const double time_step = replayer_.world().plan().time_step;
-  std::optional<ExportSource> frames;
-  if (exporter_) frames.emplace(*exporter_);
   show();
-  if (measurer_) measurer_->begin(replayer_.world(), replayer_.elapsed());
-  if (frames) frames->show(replayer_.world(), replayer_.elapsed());
+  files_->begin(replayer_.world(), replayer_.elapsed());
   while (!stop_.load(std::memory_order_relaxed) && replayer_.elapsed() + 0.5 * time_step < stage_.seconds) {
     const std::int64_t step_ns = steady_now_ns();
     const Result<bool> stepped = replayer_.step();
@@ -112,15 +96,13 @@ void ReplayRun::run() {
     step_time_.add(to_seconds(now_ns - step_ns));
     total_ += replayer_.world().times();
     write_samples();
-    if (measurer_) measurer_->step(replayer_.world(), replayer_.elapsed());
-    if (frames) frames->show(replayer_.world(), replayer_.elapsed());
+    files_->step(replayer_.world(), replayer_.elapsed());
     show();
     wall_ = to_seconds(now_ns - begin_ns);
     shown_time_.store(replayer_.elapsed(), std::memory_order_relaxed);
     shown_rate_.store(replayer_.elapsed() / std::max(wall_, 1e-9), std::memory_order_relaxed);
   }
   if (wrenches_) wrenches_->flush();
-  if (measurer_) measurer_->stop();
   snapshots_.close();
   running_.store(false, std::memory_order_release);
 }
@@ -137,12 +119,11 @@ HudFacts ReplayRun::facts(double picture_rate) const {
   return facts;
 }
 
-Rates ReplayRun::note_rates() {
+Rates ReplayRun::world_rates() {
   Rates rates;
   rates.time = shown_time_.load(std::memory_order_relaxed);
   rates.real_time = shown_rate_.load(std::memory_order_relaxed);
   rates.lost = shown_lost_.load(std::memory_order_relaxed);
-  rates_.add(rates);
   return rates;
 }
 
@@ -166,8 +147,7 @@ void ReplayRun::report(RunSummary& s) const {
   s.verdict = verdict.text(replayer_.head().spacing);
   if (wrenches_) s.files.emplace_back("wrenches.csv");
   if (wrenches_ && !wrenches_->problem().empty()) s.problems.push_back(wrenches_->problem());
-  report_instruments(measurer_.get(), stage_.scene, replayer_.sampled(), world, s);
-  report_export(exporter_.get(), s);
+  files_->report(world, s);
 }
 
 }  // namespace slosh

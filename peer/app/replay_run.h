@@ -7,10 +7,9 @@
 
 #include "host/keep/replay.h"
 #include "net/histogram.h"
-#include "peer/app/export_source.h"
 #include "peer/app/live_run.h"
-#include "peer/app/measurer.h"
 #include "peer/app/prepare.h"
+#include "peer/app/world_files.h"
 #include "peer/output/table.h"
 
 namespace slosh {
@@ -21,21 +20,15 @@ class ReplayRun final : public LiveRun {
   /// Errors: a file cannot be written.
   static Result<std::unique_ptr<ReplayRun>> create(keep::Replayer& replayer, const Stage& stage,
                                                    double snapshot_rate);
-  ~ReplayRun() override;
+  ~ReplayRun() override { stop(); }
 
   void start() override;
   void request_stop() override { stop_.store(true, std::memory_order_relaxed); }
   bool running() override { return running_.load(std::memory_order_acquire); }
   void stop() override;
   SnapshotQueue& snapshots() override { return snapshots_; }
-  SnapshotPointer newest_snapshot() override { return snapshots_.pop_newest(); }
   HudFacts facts(double picture_rate) const override;
-  Rates note_rates() override;
-  RateLog& rates() override { return rates_; }
-  void pause(bool) override {}
-  bool paused() const override { return false; }
-  MouseTarget* mouse_target(std::size_t) override { return nullptr; }
-  std::size_t exports_waiting() const override { return exporter_ ? exporter_->waiting() : 0; }
+  std::size_t exports_waiting() const override { return files_->frames_waiting(); }
   void report(RunSummary& summary) const override;
 
   /// Why the replay ended before its end; after stop(). Empty = it did not.
@@ -43,6 +36,7 @@ class ReplayRun final : public LiveRun {
 
  private:
   ReplayRun(keep::Replayer& replayer, const Stage& stage, double snapshot_rate);
+  Rates world_rates() override;
   void run();
   void show();
   void write_samples();
@@ -51,11 +45,9 @@ class ReplayRun final : public LiveRun {
   const Stage& stage_;
   double snapshot_rate_;
   SnapshotQueue snapshots_;
-  RateLog rates_;
-  std::unique_ptr<Table> wrenches_;
-  std::unique_ptr<Measurer> measurer_;  // null where nothing is measured
-  std::unique_ptr<Exporter> exporter_;  // null where nothing is exported
-  double next_snapshot_ = 0.0;          // s since the recording's start
+  std::unique_ptr<Table> wrenches_;  // null where nothing is written
+  std::unique_ptr<WorldFiles> files_;
+  double next_snapshot_ = 0.0;  // s since the recording's start
   double next_sample_ = 0.0;
   BodySnapshot bodies_;
   std::vector<DeviceSummary> peaks_;

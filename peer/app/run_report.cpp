@@ -1,24 +1,9 @@
 #include "peer/app/run_report.h"
 
-#include "peer/app/hand_trouble.h"
-
 namespace slosh {
-namespace {
 
 Spread spread_of(const Histogram& histogram, double unit) {
   return {histogram.percentile(0.5) * unit, histogram.percentile(0.99) * unit, histogram.max() * unit};
-}
-
-}  // namespace
-
-std::string budget_lines(const Servo& servo, const Scene& scene) {
-  std::string lines;
-  for (std::size_t i = 0; i < servo.devices(); ++i) {
-    const std::string line =
-        servo.holds(i) ? budget_line(scene.grips[i].name, servo.budget(i)) : std::string();
-    if (!line.empty()) lines += (lines.empty() ? "" : "\n") + line;
-  }
-  return lines;
 }
 
 void report_stage(const Stage& stage, RunSummary& s) {
@@ -51,26 +36,6 @@ void report_left(const Diagnostics& end, const Diagnostics& start, const Plan& p
   s.walls_hold = plan.walls_hold();
   s.fluid_mass_start = start.mass;
   s.fluid_mass_end = end.mass;
-}
-
-void report_hands(const DeviceLoop& loop, const Servo& servo, const Recorder& recorder, const Scene& scene,
-                  RunSummary& s) {
-  const DeviceLoopReport& ran = loop.report();
-  s.device_loop_us = spread_of(ran.period, 1e6);
-  s.device_ticks = ran.ticks;
-  s.device_missed = ran.missed;
-  s.device_scheduler = ran.scheduler();
-  s.device_memory_locked = ran.memory_locked;
-  s.status |= servo.status();
-  s.rejected_poses += servo.reports_rejected();
-  s.samples_lost = servo.samples_lost();
-  for (std::size_t i = 0; i < servo.devices(); ++i) {
-    if (servo.device(i) == nullptr) continue;
-    const Peak& peak = recorder.peaks()[i];
-    s.devices.push_back(
-        {scene.grips[i].name, servo.device(i)->kind(), peak.force, peak.torque, servo.budget(i).clipped});
-  }
-  for (const std::string& each : run_troubles(recorder.problem(), servo, scene)) s.problems.push_back(each);
 }
 
 }  // namespace slosh

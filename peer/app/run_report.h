@@ -1,10 +1,8 @@
-// What runs of every kind say of themselves in a summary: LocalRun, RemoteRun and ReplayRun add what is
-// theirs.
+// What runs of every kind say of themselves in a summary, beside what each adds.
 #pragma once
 
+#include "net/histogram.h"
 #include "peer/app/prepare.h"
-#include "peer/haptics/device_loop.h"
-#include "peer/output/recorder.h"
 #include "peer/output/summary.h"
 #include "sim/world.h"
 
@@ -18,11 +16,7 @@ void report_time(double simulated, double wall, RunSummary& summary);
 void report_steps(const StepTimes& total, const Histogram& step_time, RunSummary& summary);
 /// What left the world, and the fluid's mass, from `start` of the run to its `end`.
 void report_left(const Diagnostics& end, const Diagnostics& start, const Plan& plan, RunSummary& summary);
-/// A line for each hand whose device clips (budget_line); empty where none does.
-std::string budget_lines(const Servo& servo, const Scene& scene);
-/// The device loop, the devices and their files. All stopped; the recorder's and the servo's grips are
-/// `scene`'s.
-void report_hands(const DeviceLoop& loop, const Servo& servo, const Recorder& recorder, const Scene& scene,
-                  RunSummary& summary);
+/// `unit`: how many of it are one of the histogram's.
+Spread spread_of(const Histogram& histogram, double unit);
 
 }  // namespace slosh

@@ -1,4 +1,6 @@
 // The verb `settings`, and what the settings file does to the options of the others.
+#include "peer/settings/settings.h"
+
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <memory>
@@ -7,7 +9,6 @@
 #include <string_view>
 
 #include "net/text/clean.h"
-#include "peer/app/settings_in_force.h"
 #include "peer/app/verbs.h"
 #include "peer/output/whole_file.h"
 #include "peer/settings/key_bindings.h"

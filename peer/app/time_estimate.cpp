@@ -5,12 +5,12 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <cstdio>
 #include <iostream>
 #include <vector>
 
 #include "net/clock.h"
 #include "peer/output/summary.h"
+#include "sim/math/format.h"
 
 namespace slosh {
 namespace {
@@ -19,10 +19,7 @@ constexpr std::size_t kMaxSteps = 5;
 constexpr double kLongest = 3.0;  // s of measuring, and a step
 
 std::string format_step(double seconds) {
-  char text[64];
-  std::snprintf(text, sizeof text, seconds < 1e-3 ? "%.3g µs" : "%.3g ms",
-                seconds * (seconds < 1e-3 ? 1e6 : 1e3));
-  return text;
+  return seconds < 1e-3 ? format("%.3g µs", 1e6 * seconds) : format("%.3g ms", 1e3 * seconds);
 }
 
 bool someone_says_yes(Progress& progress, const std::string& question) {
@@ -34,16 +31,10 @@ bool someone_says_yes(Progress& progress, const std::string& question) {
 }  // namespace
 
 std::string duration(double seconds) {
-  char text[64];
-  if (seconds < 90.0)
-    std::snprintf(text, sizeof text, "%.0f s", seconds);
-  else if (seconds < 5400.0)
-    std::snprintf(text, sizeof text, "%.0f min", seconds / 60.0);
-  else if (seconds < 172800.0)
-    std::snprintf(text, sizeof text, "%.1f h", seconds / 3600.0);
-  else
-    std::snprintf(text, sizeof text, "%.0f days", seconds / 86400.0);
-  return text;
+  if (seconds < 90.0) return format("%.0f s", seconds);
+  if (seconds < 5400.0) return format("%.0f min", seconds / 60.0);
+  if (seconds < 172800.0) return format("%.1f h", seconds / 3600.0);
+  return format("%.0f days", seconds / 86400.0);
 }
 
 double measure_step(World& world, std::span<const HandleInput> hands) {
@@ -78,20 +69,15 @@ TimeEstimate estimate_time(const PlannedTime& planned, double time_step, double 
 std::string in_words(const TimeEstimate& estimate, const PlannedTime& planned, const Plan& plan) {
   const double simulated = planned.settle + (std::isfinite(planned.seconds) ? planned.seconds : 0.0);
   const auto steps = static_cast<std::uint64_t>(std::llround(simulated / plan.time_step));
-  char text[600];
-  std::snprintf(text, sizeof text, "%s steps of %s (by %s), each %s of work here", grouped(steps).c_str(),
-                format_step(plan.time_step).c_str(), plan.time_step_reason.c_str(),
-                format_step(estimate.step).c_str());
-  std::string words = text;
+  std::string words = grouped(steps) + " steps of " + format_step(plan.time_step) + " (by " +
+                      plan.time_step_reason + "), each " + format_step(estimate.step) + " of work here";
   const char* joint = ": about ";
   if (planned.settle > 0.0) {
     words += joint + duration(estimate.settle) + " to settle";
     joint = " and ";
   }
   if (std::isfinite(planned.seconds)) words += joint + duration(estimate.run) + " for the run";
-  char pace[64];
-  std::snprintf(pace, sizeof pace, ", real time × %.2g", estimate.pace);
-  return words + pace;
+  return words + format(", real time × %.2g", estimate.pace);
 }
 
 Result<bool> agree_on_time(World& world, std::span<const HandleInput> hands, const PlannedTime& planned,

@@ -13,6 +13,7 @@ constexpr int kExitOk = 0;
 constexpr int kExitFailed = 1;
 constexpr int kExitUsage = 2;
 
+class Progress;
 struct SettingsFile;
 
 /// What the chosen verb will do once the command line is read.
@@ -36,8 +37,14 @@ inline constexpr const char* kReportAbout =
     "Measure: error against run time, stability, delays, passes, pictures, figures";
 /// `file` must outlive `chosen`.
 void add_settings(CLI::App& app, const SettingsFile& file, VerbRun& chosen);
+/// Gives the options of every verb of `app` their values from `file`, and says at each which key it has. What
+/// an option refuses becomes an error of the file. To be called once all verbs are there and before they are
+/// parsed.
+void put_in_force(SettingsFile& file, CLI::App& app);
 
 /// "slosh: <where>: <what>. <mend>." on stderr; returns kExitFailed.
 int fail(const Error& error);
+/// The same, below what `progress` kept up to date.
+int fail(const Error& error, Progress& progress);
 
 }  // namespace slosh

@@ -59,7 +59,7 @@ WindowControls::Wish WindowControls::follow(const InputState& input, const glm::
       run_.change(wish);
   }
   const Wish wish = input.hud_wants_keyboard ? Wish::kNothing : follow_keys(input);
-  if (wish == Wish::kEnd || wish == Wish::kAgain) return wish;
+  if (wish == Wish::kEnd) return wish;
   if (world != nullptr) follow_mouse(input, picture, *world);
   learn(picture);
   return wish;
@@ -73,7 +73,7 @@ WindowControls::Wish WindowControls::follow_keys(const InputState& input) {
     const std::optional<WindowAction> action = keys_.action_of(press.key);
     if (!action) continue;
     const Wish one = follow_key(*action, press.shift);
-    if (one == Wish::kEnd || one == Wish::kAgain) return one;
+    if (one == Wish::kEnd) return one;
     if (one != Wish::kNothing) wish = one;
   }
   return wish;
@@ -85,7 +85,8 @@ WindowControls::Wish WindowControls::follow_key(WindowAction action, bool shift)
       return Wish::kEnd;
     case WindowAction::kAgain:
       reset_hands();
-      return run_.start_again() ? Wish::kNothing : Wish::kAgain;
+      run_.start_again();
+      break;
     case WindowAction::kHelp:
       guide_.show_all = !guide_.show_all;
       guide_.note(WindowGuide::Used::kKeys);

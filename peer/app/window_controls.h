@@ -31,7 +31,7 @@ class WindowControls {
   /// it.
   int filter = 0;
 
-  enum class Wish { kNothing, kEnd, kAgain, kPicture };
+  enum class Wish { kNothing, kEnd, kPicture };
   /// Once a picture, with the newest state of the bodies (none yet: null). `picture` in pixels.
   Wish follow(const InputState& input, const glm::ivec2& picture, const BodySnapshot* world);
   /// A new snapshot, for what is drawn and plotted over the picture.

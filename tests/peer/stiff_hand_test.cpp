@@ -8,10 +8,10 @@
 
 #include "host/input_gate.h"
 #include "net/grip_start.h"
+#include "peer/app/hands_tap.h"
 #include "peer/haptics/make_device.h"
 #include "peer/haptics/script_device.h"
 #include "peer/haptics/servo.h"
-#include "peer/app/wrench_tap.h"
 #include "scenes/sample.h"
 #include "tests/physics/lab.h"
 
@@ -80,7 +80,7 @@ class StiffHand : public ::testing::Test {
     first.bodies = now;
     Channel channel(1, first, 1000);
     InputGate gate(scene);
-    WrenchTap tap(1);
+    HandsTap tap(1);
     tap.on_start(world, {});
     ServoOptions options;
     options.steps = &tap.steps();

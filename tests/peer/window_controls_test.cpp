@@ -9,7 +9,7 @@
 #include <iterator>
 #include <sstream>
 
-#include "peer/app/pressure_tap.h"
+#include "peer/app/window_tap.h"
 #include "peer/view/force_panel.h"
 #include "peer/view/measures.h"
 
@@ -24,13 +24,8 @@ class NotedRun : public LiveRun {
   bool running() override { return true; }
   void stop() override {}
   SnapshotQueue& snapshots() override { return queue_; }
-  SnapshotPointer newest_snapshot() override { return nullptr; }
   HudFacts facts(double) const override { return {}; }
-  Rates note_rates() override { return {}; }
-  RateLog& rates() override { return log_; }
-  void pause(bool wanted) override { paused_ = wanted; }
   bool paused() const override { return paused_; }
-  MouseTarget* mouse_target(std::size_t) override { return nullptr; }
   LiveValues live_values() const override {
     LiveValues values;
     values.may_change = values.may_pace = true;
@@ -39,15 +34,18 @@ class NotedRun : public LiveRun {
   }
   void change(const LiveWish& wish) override { pace = wish.value; }
   void step_standing(int count) override { steps += count; }
-  bool start_again() override { return true; }
   void report(RunSummary&) const override {}
 
   double pace = 1.0;
   int steps = 0;
 
  private:
+  Rates world_rates() override { return {}; }
+  void ask(const RemoteCommand& command, bool) override {
+    paused_ = command.action == wire::WorldAction::kPause;
+  }
+
   SnapshotQueue queue_{1 << 20};
-  RateLog log_;
   bool paused_ = false;
 };
 
@@ -172,10 +170,10 @@ TEST_F(WindowControlsTest, ViewsAreThereInTheNextRun) {
   std::filesystem::remove_all(folder);
 }
 
-TEST(PressureTap, ReadsOnlyWhileItIsLookedAt) {
-  PressureTap tap;
-  EXPECT_EQ(tap.look(false), nullptr);
-  EXPECT_EQ(tap.look(true), nullptr) << "none yet";
+TEST(WindowTap, ReadsPressuresOnlyWhileItIsLookedAt) {
+  WindowTap tap;
+  EXPECT_EQ(tap.pressures(false), nullptr);
+  EXPECT_EQ(tap.pressures(true), nullptr) << "none yet";
 }
 
 TEST(ForcePanel, KeepsATableAndStartsAnewWithTheWorld) {

@@ -1,13 +1,16 @@
-#include "peer/app/kept_spacing.h"
+#include "peer/app/state_folder.h"
 
 #include <cmath>
 #include <cstdint>
+#include <cstdlib>
 #include <fstream>
 #include <iterator>
 #include <nlohmann/json.hpp>
+#include <system_error>
 
-#include "peer/app/state_folder.h"
+#include "peer/output/run_folder.h"
 #include "peer/output/whole_file.h"
+#include "scenes/load.h"
 #include "sim/math/format.h"
 
 namespace slosh {
@@ -29,11 +32,11 @@ json read_kept() {
   return kept.is_array() ? kept : json::array();
 }
 
-/// FNV-1a.
-std::uint64_t digest(const std::string& bytes) {
-  std::uint64_t hash = 14695981039346656037ull;
-  for (const char c : bytes) hash = (hash ^ static_cast<unsigned char>(c)) * 1099511628211ull;
-  return hash;
+/// FNV-1a, of the width of its basis.
+template <class Hash>
+Hash digest(const std::string& bytes, Hash basis, Hash prime) {
+  for (const char c : bytes) basis = (basis ^ static_cast<unsigned char>(c)) * prime;
+  return basis;
 }
 
 bool is_of(const json& entry, const std::string& key) {
@@ -42,12 +45,34 @@ bool is_of(const json& entry, const std::string& key) {
 
 }  // namespace
 
+std::string state_folder() {
+  const char* const state = std::getenv("XDG_STATE_HOME");
+  if (state && *state == '/') return std::string(state) + "/slosh";
+  const char* const home = std::getenv("HOME");
+  return home && *home == '/' ? std::string(home) + "/.local/state/slosh" : std::string();
+}
+
+std::filesystem::path file_of_views(const Scene& scene) {
+  const std::string folder = state_folder();
+  if (folder.empty()) return {};
+  std::string name = folder_name(scene.name, "scene");
+  std::error_code code;
+  bool shipped = scene.source_file.empty();
+  for (const SceneEntry& entry : shipped_scenes())
+    shipped = shipped || std::filesystem::equivalent(entry.file, scene.source_file, code);
+  if (!shipped) {
+    const std::filesystem::path path = std::filesystem::weakly_canonical(scene.source_file, code);
+    name += format("-%08x", digest(path.string(), 2166136261u, 16777619u));
+  }
+  return std::filesystem::path(folder) / "views" / (name + ".json");
+}
+
 std::string spacing_key(const std::filesystem::path& scene_file, const std::string& processor,
                         Backend backend, int threads) {
   std::ifstream in(scene_file, std::ios::binary);
   const std::string bytes{std::istreambuf_iterator<char>(in), {}};
   return format("%016llx, %s, %d threads, slosh " SLOSH_VERSION ", ",
-                static_cast<unsigned long long>(digest(bytes)), backend_name(backend), threads) +
+                digest(bytes, 14695981039346656037ull, 1099511628211ull), backend_name(backend), threads) +
          processor;
 }
 
