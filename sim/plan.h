@@ -77,14 +77,14 @@ struct Plan {
 
   bool has(PassId id) const { return runs.has(id); }
   bool has_fluid() const { return runs.has(PassId::kSortFluid); }
-  /// Penetration clamp: particles are kept from passing walls (walls/wall_guard.h). The paper has no such
-  /// thing.
-  bool guards_walls() const { return has(PassId::kWalls) && model != ParticleModel::kPaper; }
+  /// Penetration clamp: particles are kept from passing walls (walls/penetration_clamp.h). The paper has no
+  /// such thing.
+  bool clamps_penetration() const { return has(PassId::kWalls) && model != ParticleModel::kPaper; }
   /// Nothing passes a wall: what leaves the domain went over an edge.
-  bool walls_hold() const { return !has(PassId::kWalls) || guards_walls(); }
+  bool walls_hold() const { return !has(PassId::kWalls) || clamps_penetration(); }
   bool fluid_waits() const {  ///< it moves on after the bodies only
     return runs.has_any_of({PassId::kBodyDrag, PassId::kImplicitViscosity, PassId::kPressureSolve}) ||
-           (guards_walls() && waits_for_bodies);
+           (clamps_penetration() && waits_for_bodies);
   }
   bool viscous() const { return runs.has_any_of({PassId::kOneViscosity, PassId::kPairViscosity}); }
   /// Viscosity is among the explicit forces that a sub-step begins with.

@@ -128,7 +128,7 @@ BodyForces World::Impl::body_forces(const SubStep& step) const {
 }
 
 std::span<const RigidBody> World::Impl::bodies_after(const SubStep& step) {
-  if (step.part == TakePart::kFluid || fluid_waits(step.part) || !plan().guards_walls() ||
+  if (step.part == TakePart::kFluid || fluid_waits(step.part) || !plan().clamps_penetration() ||
       !plan().has(PassId::kPlaceBodies))
     return bodies.bodies();
   ahead = bodies.bodies();
