@@ -164,11 +164,11 @@ Wrench HeldBodies::guard(std::size_t i, const Wrench& wanted, const Pose& hand, 
   const Place& place = places_[i];
   if (place.body < 0) return wanted;
   Entry& entry = bodies_[static_cast<std::size_t>(place.body)];
-  const Wrench guarded =
-      entry.held.guard(place.grip, wanted, hand, twist, dt, std::min(most_damping, kMaxDamping), pace);
+  const Wrench limited =
+      entry.held.limit(place.grip, wanted, hand, twist, dt, std::min(most_damping, kMaxDamping), pace);
   if (entry.share <= 0.0) return wanted;
-  return {wanted.force + entry.share * (guarded.force - wanted.force),
-          wanted.torque + entry.share * (guarded.torque - wanted.torque)};
+  return {wanted.force + entry.share * (limited.force - wanted.force),
+          wanted.torque + entry.share * (limited.torque - wanted.torque)};
 }
 
 void HeldBodies::read(std::size_t i, const Pose& before, const Pose& now) noexcept {

@@ -33,7 +33,7 @@ HeldBody::HeldBody(const ReplicaBody& body, std::vector<ReplicaGrip> grips, cons
       grips_(poses_of(grips)),
       hands_(grips.size()),
       speeds_(grips.size()),
-      guards_(grips.size()),
+      controllers_(grips.size()),
       load_work_(body, grips),
       load_(body_, grips_, tuning.follows_slosh),
       used_(grips.size()) {
@@ -112,7 +112,7 @@ void HeldBody::begin_count(const HostUpdate& word) noexcept {
   energy_.forgotten = energy_.lent = 0.0;
   energy_.work_heard = replica_.work_heard();
   for (std::size_t g = 0; g < hands_.size(); ++g) {
-    energy_.stored -= hands_[g].own ? guards_[g].energy() : hands_[g].energy;
+    energy_.stored -= hands_[g].own ? controllers_[g].energy() : hands_[g].energy;
     if (g >= word.hands.size()) continue;
     const Wrench& on_hand = word.hands[g].on_hand;
     const CouplingGains& k = gains_[g];
@@ -164,23 +164,23 @@ GripState HeldBody::late_grip(std::size_t g) const noexcept {
   return state;
 }
 
-Wrench HeldBody::guard(std::size_t g, const Wrench& wanted, const Pose& hand, const Twist& twist, double dt,
+Wrench HeldBody::limit(std::size_t g, const Wrench& wanted, const Pose& hand, const Twist& twist, double dt,
                        double most_damping, double pace) noexcept {
-  const double credit = balance() - guards_[g].energy() + (counted_ ? 0.0 : kUncounted);
+  const double credit = balance() - controllers_[g].energy() + (counted_ ? 0.0 : kUncounted);
   // What others hold is felt across the delay; alone on the body nothing is.
   const double share = std::max({replica_.shared(), load_.disturbance, fallback_.spring});
   const double damping = std::min(share / pace * replica_.damping(g), most_damping);
   const double turning = share / pace * replica_.rotational_damping(g);
   const Wrench damped{wanted.force - damping * twist.linear, wanted.torque - turning * twist.angular};
-  const Wrench safe = guards_[g].guard(damped, hand, twist, dt, credit, most_damping);
-  fallback_.note(guards_[g].fires());
+  const Wrench safe = controllers_[g].limit(damped, hand, twist, dt, credit, most_damping);
+  fallback_.note(controllers_[g].fires());
   return safe;
 }
 
 double HeldBody::balance() const noexcept {
   double sum = energy_.without_persons(replica_.work_believed());
   for (std::size_t j = 0; j < hands_.size(); ++j)
-    sum += hands_[j].own ? guards_[j].energy() : hands_[j].energy;
+    sum += hands_[j].own ? controllers_[j].energy() : hands_[j].energy;
   return sum;
 }
 
@@ -190,8 +190,8 @@ void HeldBody::advance(std::span<const OwnHand> own, double dt, std::int64_t now
     ReplicaHand& hand = hands_[g];
     if (g < own.size() && own[g].here) {
       if (!hand.own) {
-        guards_[g].restart(own[g].handle);
-        energy_.stored += hand.energy - guards_[g].energy();
+        controllers_[g].restart(own[g].handle);
+        energy_.stored += hand.energy - controllers_[g].energy();
       }
       hand.own = true;
       hand.engaged = own[g].engaged;
@@ -199,7 +199,7 @@ void HeldBody::advance(std::span<const OwnHand> own, double dt, std::int64_t now
       hand.twist = own[g].twist;
     } else if (hand.own) {
       hand = ReplicaHand{};
-      hand.energy = guards_[g].energy();
+      hand.energy = controllers_[g].energy();
       speeds_[g].forget();
     } else if (since_heard_ < kCarriedOn) {
       hand.handle = extrapolate(hand.handle, hand.twist, dt);

@@ -309,9 +309,9 @@ class Study {
     if (own.engaged) {
       const Wrench wanted =
           coupling_wrench_on_hand(host_.gains(), own.handle, own.twist, grip.pose, grip.twist);
-      felt = held.guard(g, wanted, own.handle, own.twist, kPeriod, c_.most_damping);
+      felt = held.limit(g, wanted, own.handle, own.twist, kPeriod, c_.most_damping);
     } else {
-      (void)held.guard(g, Wrench{}, own.handle, Twist{}, kPeriod, c_.most_damping);
+      (void)held.limit(g, Wrench{}, own.handle, Twist{}, kPeriod, c_.most_damping);
     }
     held.sent(g, felt);
     site.hand.energy = held.energy(g);

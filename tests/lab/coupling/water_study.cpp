@@ -140,7 +140,7 @@ class Site {
     Wrench felt;
     if (held_.started()) {
       const GripState grip = held_.grip(0);
-      felt = held_.guard(0, coupling_wrench_on_hand(gains_, hand.pose, hand.twist, grip.pose, grip.twist),
+      felt = held_.limit(0, coupling_wrench_on_hand(gains_, hand.pose, hand.twist, grip.pose, grip.twist),
                          hand.pose, hand.twist, kWaterPeriod, kMaxDamping);
     }
     held_.sent(0, felt);
