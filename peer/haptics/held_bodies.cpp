@@ -72,12 +72,12 @@ void HeldBodies::hear(const BodyMessage& newest, bool fresh, std::int64_t now_ns
   here_ = newest.heard_pose_ns == kPoseNotTold;
   // After a pause, a silence or a reset the body is where the host says, whatever was here.
   const bool begin = gone || rate_ <= 0.0 || newest.run != run_ ||
-                     freshness(to_seconds(now_ns - heard_ns_), interval_) < 1.0;
+                     freshness(to_seconds(now_ns - received_ns_), interval_) < 1.0;
   began_ = begin;
   rate_ = newest.rate;
   interval_ = newest.time_step / newest.rate;
   run_ = newest.run;
-  heard_ns_ = now_ns;
+  received_ns_ = now_ns;
   for (Entry& entry : bodies_) {
     if (begin) restart(entry);
     tell(entry, newest, now_ns);
@@ -128,7 +128,7 @@ void HeldBodies::tell(Entry& entry, const BodyMessage& newest, std::int64_t now_
   word.hands = entry.said;
   word.tells_fluid = true;
   word.fluid = body.fluid;
-  entry.held.hear(word);
+  entry.held.receive(word);
 }
 
 bool HeldBodies::anew(std::size_t i) const noexcept {

@@ -99,7 +99,7 @@ class HeldBodies {
   double rate_ = 0.0;
   double interval_ = 0.0;  // s between updates
   bool here_ = true;       // the host is in this process
-  std::int64_t heard_ns_ = 0;
+  std::int64_t received_ns_ = 0;
   std::int64_t advanced_ns_ = 0;
   double caught_up_ = 0.0;  // simulated s of this tick that were caught up with
   bool began_ = false;      // replicas did, with this tick's update

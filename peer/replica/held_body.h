@@ -36,7 +36,7 @@ inline GripState between(const GripState& a, const GripState& b, double share) {
   return mixed;
 }
 
-/// A tick is: hear() what came; for each own hand grip(), the coupling to it, limit(), sent(); then
+/// A tick is: receive() what came; for each own hand grip(), the coupling to it, limit(), sent(); then
 /// advance(). Reads no clock, neither allocates nor locks once made; one thread.
 class HeldBody {
  public:
@@ -45,9 +45,10 @@ class HeldBody {
   /// The next update is taken as it is: at first, after a reset, a pause, a silence.
   void restart() noexcept;
   bool started() const noexcept { return started_; }
-  void hear(const HostUpdate& word) noexcept;
-  /// How the fluid answers to the body, before hear() of the same state or a newer one: its derivatives, its
-  /// added mass and the trust in them count. What acts besides them is worked out from how the body moves.
+  void receive(const HostUpdate& word) noexcept;
+  /// How the fluid answers to the body, before receive() of the same state or a newer one: its derivatives,
+  /// its added mass and the trust in them count. What acts besides them is worked out from how the body
+  /// moves.
   void set_fluid(const FluidLoad& model) noexcept { load_.fluid = made_safe(model); }
 
   /// Where an own hand's coupling goes to, at the moment of the last advance().
@@ -93,12 +94,12 @@ class HeldBody {
   std::vector<VelocityWindow> speeds_;            // of other sites' hands
   std::vector<PassivityController> controllers_;  // of own ones
   LoopDelayEstimate delay_;
-  RigidMotion heard_;
-  double heard_time_ = 0.0;
+  RigidMotion received_;
+  double received_time_ = 0.0;
   bool counted_ = false;  // all who hold the body
-  std::int64_t heard_ns_ = 0;
-  double pace_ = 1.0;         // HostUpdate::pace
-  double since_heard_ = 0.0;  // s
+  std::int64_t received_ns_ = 0;
+  double pace_ = 1.0;            // HostUpdate::pace
+  double since_received_ = 0.0;  // s
   double ahead_ = 0.0;  // s until the moment of the update, when it came: a slow host's is of a step's end
   bool started_ = false;
   LoadWork load_work_;

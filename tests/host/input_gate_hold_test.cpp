@@ -68,10 +68,10 @@ TEST(InputGate, AHandThatWasNotHeardForLongTakesHoldAnew) {
   EXPECT_LT(hand.step(), 1.0);
   EXPECT_TRUE(hand.gate.rejected() == 0);
 
-  MovedHand heard;
-  for (int i = 0; i < 30; ++i) heard.step();
-  heard.say(0.02);
-  EXPECT_NEAR(heard.step(), 20.0, 1.0) << "30 ms are a late datagram, and the hand has pulled";
+  MovedHand late;
+  for (int i = 0; i < 30; ++i) late.step();
+  late.say(0.02);
+  EXPECT_NEAR(late.step(), 20.0, 1.0) << "30 ms are a late datagram, and the hand has pulled";
 }
 
 TEST(InputGate, AHandThatIsSuddenlyElsewhereTakesHoldAnew) {

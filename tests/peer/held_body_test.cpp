@@ -70,7 +70,7 @@ Outcome held_by(double pace, bool limited) {
       said[0] = {true, own[0].handle, {}, i < 110 ? 0 : to_nanoseconds(now - 0.1) + 1, true, 0.0};
       said[1] = {true, {word.motion.position, {1, 0, 0, 0}}, {{-force, 0.0, 0.0}, {}}, 0, true, 0.0};
       word.hands = said;
-      held.hear(word);
+      held.receive(word);
     }
     const GripState grip = held.grip(0);
     const Wrench wanted = coupling_wrench_on_hand(gains, own[0].handle, own[0].twist, grip.pose, grip.twist);
@@ -132,7 +132,7 @@ TEST(HeldBody, TheSpringToALateWordIsNotStretchedByTheDelay) {
                  0.0};
       said[1] = {true, {word.motion.position, {1, 0, 0, 0}}, {}, 0, true, now < 1.0 ? -20.0 * now : 0.0};
       word.hands = said;
-      held.hear(word);
+      held.receive(word);
       const GripState grip = held.grip(0);
       const Wrench wanted =
           coupling_wrench_on_hand(gains, own[0].handle, own[0].twist, grip.pose, grip.twist);
@@ -179,7 +179,7 @@ TEST(HeldBody, WhatDampersUsedUpIsForgotten) {
     word.time = now;
     const HostHand said{true, own[0].handle, {{-1000.0 * x, 0.0, 0.0}, {}}, word.now_ns, true, 0.0};
     word.hands = {&said, 1};
-    held.hear(word);
+    held.receive(word);
     const GripState grip = held.grip(0);
     const Wrench wanted = coupling_wrench_on_hand(gains, own[0].handle, own[0].twist, grip.pose, grip.twist);
     held.sent(0, held.limit(0, wanted, own[0].handle, own[0].twist, kHeldTick, 500.0));
@@ -216,7 +216,7 @@ TEST(HeldBody, WhatTheHostsStepTookBeyondAllThereWasIsLentAndPaidBack) {
       own[0].handle.position.x += force / gains.stiffness;
       const HostHand said{true, own[0].handle, {{-force, 0.0, 0.0}, {}}, word.now_ns, true, 0.0};
       word.hands = {&said, 1};
-      held.hear(word);
+      held.receive(word);
       (void)held.limit(0, {}, own[0].handle, own[0].twist, kHeldTick, 500.0);
       held.sent(0, {});  // its device gives nothing, so that its person puts nothing in
       held.advance(own, kHeldTick, to_nanoseconds(now + kHeldTick) + 1);
@@ -261,7 +261,7 @@ std::vector<double> swung_with(double rounds) {
         true, {{place(then), 0.0, 0.0}, {1, 0, 0, 0}}, {{told, 0.0, 0.0}, {}}, to_nanoseconds(then) + 1, true,
         0.0};
     word.hands = said;
-    held.hear(word);
+    held.receive(word);
     const GripState grip = held.grip(0);
     felt.push_back(
         coupling_wrench_on_hand(gains, own[0].handle, own[0].twist, grip.pose, grip.twist).force.x);
@@ -291,12 +291,12 @@ TEST(HeldBody, BeginsAnewAfterARestart) {
   const HostHand said{true, {}, {}, 0, true, 0.0};
   word.hands = {&said, 1};
   EXPECT_FALSE(held.started());
-  held.hear(word);
+  held.receive(word);
   EXPECT_EQ(held.grip(0).pose.position, word.motion.position);
   held.restart();
   EXPECT_FALSE(held.started());
   word.motion.position = {-1.0, 0.0, 0.0};
-  held.hear(word);
+  held.receive(word);
   EXPECT_EQ(held.grip(0).pose.position, word.motion.position);
 }
 
