@@ -84,9 +84,10 @@ struct Plan {
   bool clamps_penetration() const { return has(PassId::kWalls) && model != ParticleModel::kPaper; }
   /// Nothing passes a wall: what leaves the domain went over an edge.
   bool walls_hold() const { return !has(PassId::kWalls) || clamps_penetration(); }
-  bool fluid_waits() const {  ///< it moves on after the bodies only
-    return runs.has_any_of({PassId::kBodyDrag, PassId::kImplicitViscosity, PassId::kPressureSolve}) ||
-           (clamps_penetration() && waits_for_bodies);
+  /// The fluid moves on after the bodies only. `with_bodies`: they are solved in the same sub-step.
+  bool fluid_waits(bool with_bodies) const {
+    return runs.has_any_of({PassId::kImplicitViscosity, PassId::kPressureSolve}) ||
+           (with_bodies && (has(PassId::kBodyDrag) || (clamps_penetration() && waits_for_bodies)));
   }
   bool viscous() const { return runs.has_any_of({PassId::kOneViscosity, PassId::kPairViscosity}); }
   /// Viscosity is among the explicit forces that a sub-step begins with.
