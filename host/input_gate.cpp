@@ -145,7 +145,7 @@ void InputGate::stood_still() {
 
 /// Who else holds the body of a hand that holds on. A stand is nobody.
 Company InputGate::company(const Hand& hand, std::int64_t clock_ns) const {
-  const auto heard = [&](const Hand& of) {
+  const auto fresh = [&](const Hand& of) {
     return of.good.engaged && clock_ns - of.received_ns <= to_nanoseconds(kYieldAfter);
   };
   Company found = Company::kAlone;
@@ -153,7 +153,7 @@ Company InputGate::company(const Hand& hand, std::int64_t clock_ns) const {
     if (&other == &hand || other.body != hand.body || !other.has_good || !other.good.engaged ||
         other.good.stand)
       continue;
-    if (heard(other) && !heard(hand)) return Company::kSilent;
+    if (fresh(other) && !fresh(hand)) return Company::kSilent;
     found = Company::kShared;
   }
   return found;

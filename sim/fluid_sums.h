@@ -31,10 +31,10 @@ class FluidSums {
   void add(const ImpulseSums& impulses) {
     for (std::size_t b = 0; b + 1 < impulses.size(); b += kImpulseWords) {
       for (int i = 0; i < 3; ++i)
-        sums_.guarded_impulse[i] +=
+        sums_.clamp_impulse[i] +=
             static_cast<double>(impulses[b + static_cast<std::size_t>(i)]) * constants_.impulse_units.linear;
     }
-    if (!impulses.empty()) sums_.guarded = static_cast<std::uint64_t>(impulses.back());
+    if (!impulses.empty()) sums_.clamped = static_cast<std::uint64_t>(impulses.back());
   }
 
   /// `started`: fluid particles at the start; `broken`: ParticleState's.

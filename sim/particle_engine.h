@@ -14,7 +14,7 @@
 #include "sim/passes/implicit_viscosity/implicit.h"
 #include "sim/passes/pass.h"
 #include "sim/run_constants.h"
-#include "sim/walls/guard_impulse.h"
+#include "sim/walls/clamp_impulse.h"
 #include "sim/world.h"
 
 namespace slosh {

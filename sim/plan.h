@@ -17,7 +17,9 @@ enum class PassId : std::uint8_t {
   SLOSH_PASSES(SLOSH_ROW, SLOSH_ROW, SLOSH_ROW)
 #undef SLOSH_ROW
 };
-inline constexpr std::size_t kPassCount = static_cast<std::size_t>(PassId::kDamp) + 1;
+#define SLOSH_ROW(...) +1
+inline constexpr std::size_t kPassCount = SLOSH_PASSES(SLOSH_ROW, SLOSH_ROW, SLOSH_ROW);
+#undef SLOSH_ROW
 
 /// The id as golden files have it, "sort_fluid": the folder's name in sim/passes.
 const char* name(PassId id);
@@ -77,14 +79,15 @@ struct Plan {
 
   bool has(PassId id) const { return runs.has(id); }
   bool has_fluid() const { return runs.has(PassId::kSortFluid); }
-  /// Penetration clamp: particles are kept from passing walls (walls/wall_guard.h). The paper has no such
-  /// thing.
-  bool guards_walls() const { return has(PassId::kWalls) && model != ParticleModel::kPaper; }
+  /// Penetration clamp: particles are kept from passing walls (walls/penetration_clamp.h). The paper has no
+  /// such thing.
+  bool clamps_penetration() const { return has(PassId::kWalls) && model != ParticleModel::kPaper; }
   /// Nothing passes a wall: what leaves the domain went over an edge.
-  bool walls_hold() const { return !has(PassId::kWalls) || guards_walls(); }
-  bool fluid_waits() const {  ///< it moves on after the bodies only
-    return runs.has_any_of({PassId::kBodyDrag, PassId::kImplicitViscosity, PassId::kPressureSolve}) ||
-           (guards_walls() && waits_for_bodies);
+  bool walls_hold() const { return !has(PassId::kWalls) || clamps_penetration(); }
+  /// The fluid moves on after the bodies only. `with_bodies`: they are solved in the same sub-step.
+  bool fluid_waits(bool with_bodies) const {
+    return runs.has_any_of({PassId::kImplicitViscosity, PassId::kPressureSolve}) ||
+           (with_bodies && (has(PassId::kBodyDrag) || (clamps_penetration() && waits_for_bodies)));
   }
   bool viscous() const { return runs.has_any_of({PassId::kOneViscosity, PassId::kPairViscosity}); }
   /// Viscosity is among the explicit forces that a sub-step begins with.

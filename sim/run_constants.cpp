@@ -204,7 +204,7 @@ ParticleStart make_particle_start(const Scene& scene, const SampledScene& sample
   }
   start.fixed = surface_particles(scene, sampled, constants.plan, BodyMotion::kFixed);
   start.moving = surface_particles(scene, sampled, constants.plan, BodyMotion::kFree);
-  start.guarded = guarded_fields(scene, sampled, constants.plan);
+  start.clamp_fields = clamp_fields(scene, sampled, constants.plan);
   return start;
 }
 

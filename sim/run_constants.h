@@ -11,8 +11,8 @@
 #include "sim/neighbours/cell_grid.h"
 #include "sim/passes/density/corrected_state.h"
 #include "sim/plan.h"
-#include "sim/walls/guard_impulse.h"
-#include "sim/walls/guarded_bodies.h"
+#include "sim/walls/clamp_bodies.h"
+#include "sim/walls/clamp_impulse.h"
 #include "sim/walls/wall_particles.h"
 
 namespace slosh {
@@ -61,7 +61,7 @@ struct ParticleStart {
   std::vector<Probe> probes;
   std::size_t fluid_count = 0;  ///< without the probes
   std::vector<SurfaceParticle> fixed, moving;
-  std::vector<DistanceField> guarded;  ///< one a body (guarded_fields)
+  std::vector<DistanceField> clamp_fields;  ///< one a body (clamp_fields)
 };
 
 /// One entry a fluid of the scene, and one a probe behind those.

@@ -43,7 +43,7 @@ struct SavedState {
   std::vector<HandleInput> last_input;  ///< one a grip
   Hands::Stiffness grip_stiffness;      ///< one a grip
   std::vector<KeptImpulse> impulses;    ///< of contacts, pair by pair
-  ImpulseSums walls;                    ///< what bodies have still to be given (walls/guard_impulse.h)
+  ImpulseSums walls;                    ///< what bodies have still to be given (walls/clamp_impulse.h)
   ParticleState particles;  ///< in the order that the engine has them: sums over neighbours depend on it
 };
 

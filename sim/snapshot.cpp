@@ -16,7 +16,7 @@ std::string status_text(std::uint32_t status) {
       {kStatusCompressed,
        "fluid is squeezed to twice its density: stiffness_m2_s2 100 to 400 held in trials"},
       {kStatusDeviceLost, "the GPU failed and the fluid stands still: run again with the CPU backend"},
-      {kStatusGuarded,
+      {kStatusClamped,
        "penetration clamp: fluid was pressed at a wall so hard that particles were held back"},
       {kStatusViscosityCut, "implicit viscosity did not converge: the fluid is too viscous for its step"},
       {kStatusBodyGone, "a body left the world for good and was taken out of the motion"},

@@ -23,7 +23,7 @@ enum StatusBit : std::uint32_t {
   kStatusCompressed = 1u << 6,     ///< fluid denser than twice rest: crushed, or too soft for its speed
   kStatusDeviceLost =
       1u << 7,  ///< a GPU call failed: the fluid stands still from here on (World::failure says why)
-  kStatusGuarded = 1u << 8,       ///< particles would have passed a wall and were put back
+  kStatusClamped = 1u << 8,       ///< particles would have passed a wall and were put back
   kStatusViscosityCut = 1u << 9,  ///< implicit viscosity ended before it was as exact as it should be
   kStatusBodyGone =
       1u << 10,  ///< a free body left the world for good and stands still outside (BodyState::gone)

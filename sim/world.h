@@ -67,9 +67,9 @@ struct Diagnostics {
   double kinetic_energy = 0.0;   ///< J
   double max_speed = 0.0;        ///< m/s
   double max_compression = 0.0;  ///< largest ρ/ρ⁰ − 1
-  std::uint64_t guarded = 0;     ///< how often particles were kept from passing a wall, since the start
-  glm::dvec3 guarded_impulse{0.0};  ///< kg·m/s, what that took from the fluid in the last step and bodies get
-                                    ///< in the next
+  std::uint64_t clamped = 0;     ///< how often particles were kept from passing a wall, since the start
+  glm::dvec3 clamp_impulse{0.0};  ///< kg·m/s, what that took from the fluid in the last step and bodies get
+                                  ///< in the next
 };
 
 /// Pa·s (World::settle). Half a second after its release from its lattice, half a spacing off every wall,

@@ -89,11 +89,6 @@ void World::Impl::run(const SubStep& step) {
   if (plan().has_fluid()) report(step);
 }
 
-bool World::Impl::fluid_waits(TakePart part) const {
-  return plan().runs.has_any_of({PassId::kImplicitViscosity, PassId::kPressureSolve}) ||
-         (part != TakePart::kFluid && plan().fluid_waits());
-}
-
 std::vector<PassId> World::Impl::schedule_of(TakePart part) const {
   constexpr PassSet kOfBodies{PassId::kSolveBodies, PassId::kBodyDrag, PassId::kMoveBodies};
   std::vector<PassId> schedule;
@@ -107,7 +102,7 @@ std::vector<PassId> World::Impl::schedule_of(TakePart part) const {
     schedule.insert(std::find(schedule.begin(), schedule.end(), PassId::kPressureSolve),
                     PassId::kPredictBodies);
   // Else the fluid goes on while the bodies are solved (on a GPU).
-  if (plan().has_fluid() && !fluid_waits(part)) {
+  if (plan().has_fluid() && !plan().fluid_waits(part != TakePart::kFluid)) {
     std::erase(schedule, PassId::kIntegrateFluid);
     schedule.insert(std::find(schedule.begin(), schedule.end(), PassId::kReadWrenches),
                     PassId::kIntegrateFluid);
@@ -131,7 +126,7 @@ BodyForces World::Impl::body_forces(const SubStep& step) const {
 }
 
 std::span<const RigidBody> World::Impl::bodies_after(const SubStep& step) {
-  if (step.part == TakePart::kFluid || fluid_waits(step.part) || !plan().guards_walls() ||
+  if (step.part == TakePart::kFluid || plan().fluid_waits(true) || !plan().clamps_penetration() ||
       !plan().has(PassId::kPlaceBodies))
     return bodies.bodies();
   ahead = bodies.bodies();

@@ -32,8 +32,6 @@ struct World::Impl {
   void begin_step();
   /// The passes of a sub-step's schedule.
   void run(const SubStep& step);
-  /// The fluid moves on after the bodies only.
-  bool fluid_waits(TakePart part) const;
   std::vector<PassId> schedule_of(TakePart part) const;
   void make_schedules();
   /// The engine's part of a pass, `after`: where the bodies end the sub-step.

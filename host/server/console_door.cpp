@@ -137,7 +137,7 @@ ConsoleDoor::~ConsoleDoor() {
 }
 
 // False when this caller is done with.
-bool ConsoleDoor::hear(Caller& caller, const Answer& answer) {
+bool ConsoleDoor::receive(Caller& caller, const Answer& answer) {
   char buffer[512];
   const ssize_t got = recv(caller.fd, buffer, sizeof buffer, MSG_DONTWAIT);
   if (got < 0) return errno == EAGAIN || errno == EINTR;
@@ -165,7 +165,7 @@ void ConsoleDoor::serve(int wait_ms, int also, const Answer& answer) {
   waiting.push_back({also, POLLIN, 0});
   if (poll(waiting.data(), waiting.size(), wait_ms) <= 0) return;
   for (std::size_t i = callers_.size(); i-- > 0;) {
-    if (waiting[i + 1].revents == 0 || hear(callers_[i], answer)) continue;
+    if (waiting[i + 1].revents == 0 || receive(callers_[i], answer)) continue;
     ::close(callers_[i].fd);
     callers_.erase(callers_.begin() + static_cast<std::ptrdiff_t>(i));
   }

@@ -43,7 +43,7 @@ class ConsoleDoor {
     int fd = -1;
     std::string line;
   };
-  bool hear(Caller& caller, const Answer& answer);
+  bool receive(Caller& caller, const Answer& answer);
 
   std::filesystem::path path_;
   int listening_ = -1;

@@ -79,7 +79,7 @@ void HandTable::taken(std::size_t grip, std::int64_t now_ns) {
   hand.newest = hand.first = hand.seen = hand.answered = 0;
   hand.delivery = {};
   hand.begun = false;
-  hand.heard_ns = now_ns;
+  hand.received_ns = now_ns;
   if (!hand.stand) hand.hold += 1;
 }
 
@@ -101,11 +101,11 @@ void HandTable::let_go(std::size_t grip, std::int64_t now_ns, bool also_stand) {
 }
 
 /// Whether somebody else holds the same body whose samples come.
-bool HandTable::another_is_heard(std::size_t grip, std::int64_t now_ns) const {
+bool HandTable::another_is_fresh(std::size_t grip, std::int64_t now_ns) const {
   for (std::size_t i = 0; i < grips_.size(); ++i) {
     const GripHand& other = grips_[i];
     if (i != grip && other.body == grips_[grip].body && other.held && other.newest > 0 &&
-        now_ns - other.heard_ns <= to_nanoseconds(kHoldAnew))
+        now_ns - other.received_ns <= to_nanoseconds(kHoldAnew))
       return true;
   }
   return false;
@@ -115,7 +115,7 @@ void HandTable::lose(std::size_t grip, std::int64_t now_ns) {
   GripHand& hand = grips_[grip];
   hand.answered = 0;
   if (hand.stand) return;
-  if (!hand.engaged || another_is_heard(grip, now_ns)) return let_go(grip, now_ns);
+  if (!hand.engaged || another_is_fresh(grip, now_ns)) return let_go(grip, now_ns);
   hand.held = false;
   put_on_stand(grip, hand.last, now_ns, true);
 }
@@ -144,9 +144,10 @@ std::int64_t HandTable::on_our_clock(GripHand& hand, std::int64_t stamp_ns, std:
   const std::int64_t offset = now_ns - stamp_ns;
   const bool anew = hand.delivery.received <= 1 || offset - hand.clock_offset_ns > kOldest;
   const std::int64_t drifted =
-      hand.clock_offset_ns + static_cast<std::int64_t>(kDrift * static_cast<double>(now_ns - hand.heard_ns));
+      hand.clock_offset_ns +
+      static_cast<std::int64_t>(kDrift * static_cast<double>(now_ns - hand.received_ns));
   hand.clock_offset_ns = anew ? offset : std::min(offset, drifted);
-  hand.heard_ns = now_ns;
+  hand.received_ns = now_ns;
   return stamp_ns + hand.clock_offset_ns;
 }
 

@@ -74,7 +74,7 @@ class HandTable {
     std::uint64_t answered = 0;        // holder's number of the newest sample that was not felt; 0 = none
     std::uint64_t seen = 0;            // bit i: newest − i came
     std::int64_t clock_offset_ns = 0;  // host's clock − holder's, by the quickest sample
-    std::int64_t heard_ns = 0;
+    std::int64_t received_ns = 0;
     Delivery delivery;
     Pose last;                // of what was published last,
     bool engaged = false;     // whether it held on,
@@ -88,7 +88,7 @@ class HandTable {
   void put_on_stand(std::size_t grip, const Pose& pose, std::int64_t now_ns, bool kept);
   void end_stands_beside(std::size_t grip, std::int64_t now_ns);
   void publish(std::size_t grip, const PoseMessage& message);
-  bool another_is_heard(std::size_t grip, std::int64_t now_ns) const;
+  bool another_is_fresh(std::size_t grip, std::int64_t now_ns) const;
 
   Channel& channel_;
   std::vector<GripHand> grips_;

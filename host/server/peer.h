@@ -25,7 +25,7 @@ struct Peer {
   ConnectionId id = 0;
   KeyFingerprint key{};
   std::string address;
-  std::int64_t heard_ns = 0;  ///< last datagram
+  std::int64_t received_ns = 0;  ///< last datagram
   std::int64_t control_stream = -1;
   wire::StreamSplitter splitter;
   PeerLimits limits;

@@ -114,7 +114,7 @@ void Server::on_connected(ConnectionId connection, const KeyFingerprint& key, co
   peer->id = connection;
   peer->key = key;
   peer->address = address;
-  peer->heard_ns = now();
+  peer->received_ns = now();
   peers_.add(std::move(peer));
 }
 
@@ -263,7 +263,7 @@ void Server::check_patience() {
     if (peer->gone || !peer->in) continue;
     if (!peer->scene_sent) send_scene(*peer);
     const Seat& seat = *seats_.by_number(peer->seat);
-    const bool quiet = now() - peer->heard_ns > to_nanoseconds(options_.silence);
+    const bool quiet = now() - peer->received_ns > to_nanoseconds(options_.silence);
     if (quiet && !peer->silent && !seat.grips.empty()) {
       peer->silent = true;
       // The world's gate knows by itself: a silent hand comes to rest, and gives way to those whose updates

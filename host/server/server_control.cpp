@@ -96,7 +96,7 @@ void Server::welcome(Peer& peer, Seat& seat, bool restored) {
   peer.in = true;
   peers_.sit(peer, seat.number);
   peer.participant = may_hold(seat.role);
-  peer.heard_ns = now();
+  peer.received_ns = now();
   past_.joins += 1;
   // A program that was started anew numbers its samples anew.
   for (const std::uint32_t grip : seat.grips) {
@@ -163,7 +163,7 @@ wire::Fault Server::handle(Peer& peer, const wire::GripRequest& request) {
   deeds_.note(seat.name + (request.take ? " took " : " let go of ") + seats_.grip_name(request.grip),
               unix_now());
   if (request.take) {
-    peer.heard_ns = now();
+    peer.received_ns = now();
     hands_.taken(request.grip, now());
     faults_told_[request.grip] = 0;
     start_if_held();

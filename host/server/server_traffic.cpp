@@ -26,7 +26,7 @@ void Server::on_datagram(ConnectionId connection, std::span<const std::uint8_t> 
   }
   // Datagrams may overtake the Hello.
   if (!peer->in) return;
-  peer->heard_ns = now();
+  peer->received_ns = now();
   const wire::Fault fault = wire::dispatch_datagram(
       wire::PeerDatagrams{}, bytes, [&](const auto& message) { handle(*peer, message); }, peer->agreed);
   if (!fault) return;

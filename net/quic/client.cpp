@@ -120,7 +120,7 @@ std::int64_t Client::housekeeping(std::int64_t now) {
   if (chosen_ && chosen_->state() == Connection::State::kOpen) {
     // The host answers a keep-alive at once. Nothing for much longer: an address or a NAT's memory is gone.
     const double patience = std::max(1.5 * options_.keep_alive, 0.3) + 4.0 * chosen_->stats().smoothed_rtt;
-    const bool silent = to_seconds(now - chosen_->last_heard()) > patience;
+    const bool silent = to_seconds(now - chosen_->last_received()) > patience;
     const bool failing = address_gone(chosen_->socket().send_error());
     const bool rested = to_seconds(now - moved_at_) > std::max(0.5, 0.5 * options_.keep_alive);
     if (move_wanted_ || ((silent || failing) && rested)) move(now);

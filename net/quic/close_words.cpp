@@ -21,8 +21,9 @@ std::string timed_out_words(double seconds) {
   return "timed out: nothing heard for " + in_seconds(seconds);
 }
 
-std::string no_answer_words(const Address& address, double seconds, int send_error, bool heard) {
-  if (heard) return address.text() + " answers, but no connection came about within " + in_seconds(seconds);
+std::string no_answer_words(const Address& address, double seconds, int send_error, bool received) {
+  if (received)
+    return address.text() + " answers, but no connection came about within " + in_seconds(seconds);
   std::string words = "no answer from " + address.text() + " within " + in_seconds(seconds);
   if (send_error == ECONNREFUSED) words += ": nothing listens there";
   if (send_error == ENETUNREACH || send_error == EHOSTUNREACH) words += ": there is no way to it";

@@ -9,8 +9,8 @@
 namespace slosh::quic {
 
 std::string timed_out_words(double seconds);
-/// `heard`: something came, but not enough for a connection. `send_error`: errno of sending, or 0.
-std::string no_answer_words(const Address& address, double seconds, int send_error, bool heard);
+/// `received`: something came, but not enough for a connection. `send_error`: errno of sending, or 0.
+std::string no_answer_words(const Address& address, double seconds, int send_error, bool received);
 /// An error of ours, as the library has it.
 std::string library_words(int code);
 /// The other side's transport error. `to_server`: it is a client that closed.

@@ -46,7 +46,7 @@ Connection::Connection(ConnectionOwner& owner, const TlsContext& tls, const Endp
       socket_(&socket),
       remote_(remote),
       began_(now),
-      last_heard_(now),
+      last_received_(now),
       queues_(options.queue_datagrams),
       pose_room_(server ? PoseRoom::kOfHost : PoseRoom::kOfPeer) {
   peer_.reference.user_data = this;
@@ -166,7 +166,7 @@ void Connection::receive(const Address& local, const Address& remote, std::span<
   const int code = ngtcp2_conn_read_pkt(conn_, &path, &info, packet.data(), packet.size(),
                                         static_cast<ngtcp2_tstamp>(now));
   reading = outer;
-  last_heard_ = now;
+  last_received_ = now;
   if (code != 0) fail(code, now);
 }
 

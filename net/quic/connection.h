@@ -103,7 +103,7 @@ class Connection {
   ConnectionStats stats() const;
   const Address& remote() const { return remote_; }
   UdpSocket& socket() const { return *socket_; }
-  std::int64_t last_heard() const { return last_heard_; }
+  std::int64_t last_received() const { return last_received_; }
   std::int64_t began() const { return began_; }
   /// Our CONNECTION_CLOSE, to repeat to whoever has not heard it.
   const std::vector<std::uint8_t>& close_packet() const { return close_packet_; }
@@ -157,7 +157,7 @@ class Connection {
   CloseReason parting_;  // what close() asked for
   std::int64_t linger_until_ = INT64_MAX;
   const std::int64_t began_;
-  std::int64_t last_heard_;
+  std::int64_t last_received_;
   DatagramQueues queues_;
   StreamOutbox streams_;
   std::size_t snapshots_in_a_row_ = 0;

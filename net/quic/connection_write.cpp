@@ -43,8 +43,8 @@ void Connection::flush(std::int64_t now) {
   const std::size_t wide = pose_room_.limit(figures, now);
   held_back_ = wide != SIZE_MAX;
   if (ledger_.under_way() == 0) idle_until_ = now;
-  const double unheard = 1e-9 * static_cast<double>(now - std::max(idle_until_, last_heard_));
-  const bool deaf = unheard > kDeaf + 2.0 * figures.smoothed_rtt;
+  const double silence = 1e-9 * static_cast<double>(now - std::max(idle_until_, last_received_));
+  const bool deaf = silence > kDeaf + 2.0 * figures.smoothed_rtt;
   const auto patience = static_cast<std::int64_t>(1e9 * std::max(kLate, 2.0 * figures.smoothed_rtt));
   ledger_.settle(now, patience);
   std::size_t sent = 0;

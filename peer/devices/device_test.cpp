@@ -42,7 +42,7 @@ class Run {
   }
 
   DeviceTestReport go() {
-    next_ns_ = began_ns_ = heard_ns_ = steady_now_ns();
+    next_ns_ = began_ns_ = received_ns_ = steady_now_ns();
     try {
       const std::size_t axes = report_.torque > 0.0 ? 6 : 3;
       for (std::size_t i = 0; i < axes && report_.stopped.empty(); ++i) {
@@ -65,12 +65,12 @@ class Run {
     report = device_.read({time_, kTestPeriod});
     const std::int64_t now_ns = steady_now_ns();
     if (!report.heard || !is_sound(report)) {
-      if (to_seconds(now_ns - heard_ns_) > kTestSilence) return stop("the device says nothing");
+      if (to_seconds(now_ns - received_ns_) > kTestSilence) return stop("the device says nothing");
       return false;
     }
     if (glm::length(report.twist.linear) > kTestFastest) return stop("the hand moved faster than 0.5 m/s");
     if (paced_ && last_ns_ != 0) report_.period.add(to_seconds(now_ns - last_ns_));
-    last_ns_ = heard_ns_ = read_ns_ = now_ns;
+    last_ns_ = received_ns_ = read_ns_ = now_ns;
     return true;
   }
   bool stop(const char* why) {
@@ -139,7 +139,7 @@ class Run {
   double seconds_ = 0.0;
   double time_ = 0.0;
   double last_push_ = 0.0;
-  std::int64_t began_ns_ = 0, next_ns_ = 0, last_ns_ = 0, heard_ns_ = 0, read_ns_ = 0;
+  std::int64_t began_ns_ = 0, next_ns_ = 0, last_ns_ = 0, received_ns_ = 0, read_ns_ = 0;
 };
 
 void write_zero_to(void* device) noexcept {

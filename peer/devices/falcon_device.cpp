@@ -79,7 +79,7 @@ Result<bool> FalconDevice::bring_up() {
     }
     if (const Result<bool> started = start(*firmware_); !started) return started;
   }
-  heard_ns_ = now_ns_();
+  received_ns_ = now_ns_();
   runs_ = true;
   answered_ = false;
   if (!send({0, 0, 0}))  // the first reading is its answer
@@ -173,11 +173,11 @@ DeviceReport FalconDevice::read(const DeviceMoment&) {
   answered_ = state.has_value();
   const std::int64_t now_ns = now_ns_();
   if (!state) {
-    const double silence = to_seconds(now_ns - heard_ns_);
+    const double silence = to_seconds(now_ns - received_ns_);
     if (link_ && silence > kGone) lose("the Falcon does not answer any more: has it power?");
     return silent();
   }
-  heard_ns_ = now_ns;
+  received_ns_ = now_ns;
   if (state->homed != homed_) {
     homed_ = state->homed;
     velocity_.forget();

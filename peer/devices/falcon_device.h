@@ -78,7 +78,7 @@ class FalconDevice final : public Device {
   bool answered_ = false;  // what was sent last
   std::array<int, 3> sent_{};
   std::int64_t sent_ns_ = 0;
-  std::int64_t heard_ns_ = 0;
+  std::int64_t received_ns_ = 0;
   std::int64_t looked_ns_ = 0;
 
   mutable std::mutex mutex_;

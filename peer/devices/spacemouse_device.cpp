@@ -45,7 +45,7 @@ Result<bool> SpaceMouseDevice::open_path(const SpaceMouseFound& found) {
   now_.name = found.model->name;
   now_.there = true;
   now_.state = {};
-  heard_ns_ = advanced_ns_ = now_ns_();
+  received_ns_ = advanced_ns_ = now_ns_();
   light(true);
   show();
   return true;
@@ -105,9 +105,9 @@ bool SpaceMouseDevice::take_reports(std::int64_t now_ns) {
     } else {
       now_.reports += 1;
     }
-    if (report == SpaceMouseReport::kAxes) heard_ns_ = now_ns;
+    if (report == SpaceMouseReport::kAxes) received_ns_ = now_ns;
   }
-  if (now_ns - heard_ns_ > to_nanoseconds(kSilence)) now_.state.axes = {};
+  if (now_ns - received_ns_ > to_nanoseconds(kSilence)) now_.state.axes = {};
   if (news) show();
   return true;
 }

@@ -81,7 +81,7 @@ class SpaceMouseDevice final : public Device {
   std::uint16_t product_ = 0;
   SpaceMouseLive now_;
   std::int64_t advanced_ns_ = 0;
-  std::int64_t heard_ns_ = 0;
+  std::int64_t received_ns_ = 0;
   std::int64_t looked_ns_ = 0;
 
   mutable std::mutex mutex_;

@@ -166,8 +166,8 @@ void DevicePort::run(const std::shared_ptr<Own>& own) {
         const std::int64_t now_ns = steady_now_ns();
         // It stands until the next: what is left of the force by then.
         const double age = to_seconds(now_ns - order.stamp_ns) + kPeriod;
-        const double believed = order.stamp_ns == 0 ? 0.0 : freshness(age, kPeriod);
-        device.write(slew.toward(scaled(believed, order.on_hand), now_ns));
+        const double share = order.stamp_ns == 0 ? 0.0 : freshness(age, kPeriod);
+        device.write(slew.toward(scaled(share, order.on_hand), now_ns));
         deadline_ns = std::max(deadline_ns + to_nanoseconds(kPeriod), now_ns - to_nanoseconds(kPeriod));
         if (!own_pace && loop_ticks) deadline_ns = next_reading_ns(order, now_ns);
         sleep_until_ns(deadline_ns);

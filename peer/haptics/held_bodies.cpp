@@ -72,12 +72,12 @@ void HeldBodies::hear(const BodyMessage& newest, bool fresh, std::int64_t now_ns
   here_ = newest.heard_pose_ns == kPoseNotTold;
   // After a pause, a silence or a reset the body is where the host says, whatever was here.
   const bool begin = gone || rate_ <= 0.0 || newest.run != run_ ||
-                     freshness(to_seconds(now_ns - heard_ns_), interval_) < 1.0;
+                     freshness(to_seconds(now_ns - received_ns_), interval_) < 1.0;
   began_ = begin;
   rate_ = newest.rate;
   interval_ = newest.time_step / newest.rate;
   run_ = newest.run;
-  heard_ns_ = now_ns;
+  received_ns_ = now_ns;
   for (Entry& entry : bodies_) {
     if (begin) restart(entry);
     tell(entry, newest, now_ns);
@@ -128,7 +128,7 @@ void HeldBodies::tell(Entry& entry, const BodyMessage& newest, std::int64_t now_
   word.hands = entry.said;
   word.tells_fluid = true;
   word.fluid = body.fluid;
-  entry.held.hear(word);
+  entry.held.receive(word);
 }
 
 bool HeldBodies::anew(std::size_t i) const noexcept {
@@ -164,11 +164,11 @@ Wrench HeldBodies::guard(std::size_t i, const Wrench& wanted, const Pose& hand, 
   const Place& place = places_[i];
   if (place.body < 0) return wanted;
   Entry& entry = bodies_[static_cast<std::size_t>(place.body)];
-  const Wrench guarded =
-      entry.held.guard(place.grip, wanted, hand, twist, dt, std::min(most_damping, kMaxDamping), pace);
+  const Wrench limited =
+      entry.held.limit(place.grip, wanted, hand, twist, dt, std::min(most_damping, kMaxDamping), pace);
   if (entry.share <= 0.0) return wanted;
-  return {wanted.force + entry.share * (guarded.force - wanted.force),
-          wanted.torque + entry.share * (guarded.torque - wanted.torque)};
+  return {wanted.force + entry.share * (limited.force - wanted.force),
+          wanted.torque + entry.share * (limited.torque - wanted.torque)};
 }
 
 void HeldBodies::read(std::size_t i, const Pose& before, const Pose& now) noexcept {

@@ -43,7 +43,7 @@ class HeldBodies {
   void catch_up(std::int64_t now_ns, double period, double pace, double elapsed) noexcept;
   /// Where the coupling of grip `i` goes to, of what it is at the host, carried on to now.
   GripState grip(std::size_t i, const GripState& at_host) const noexcept;
-  /// In place of the coupling's `wanted` (HeldBody::guard).
+  /// In place of the coupling's `wanted` (HeldBody::limit).
   Wrench guard(std::size_t i, const Wrench& wanted, const Pose& hand, const Twist& twist, double dt,
                double most_damping, double pace) noexcept;
   /// What the device of grip `i` was sent, and what its coupling used of the hand, by the world's time;
@@ -99,7 +99,7 @@ class HeldBodies {
   double rate_ = 0.0;
   double interval_ = 0.0;  // s between updates
   bool here_ = true;       // the host is in this process
-  std::int64_t heard_ns_ = 0;
+  std::int64_t received_ns_ = 0;
   std::int64_t advanced_ns_ = 0;
   double caught_up_ = 0.0;  // simulated s of this tick that were caught up with
   bool began_ = false;      // replicas did, with this tick's update

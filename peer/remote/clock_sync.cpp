@@ -73,17 +73,17 @@ bool ClockSync::add(std::int64_t sent_ns, std::int64_t host_received_ns, std::in
   while (recent_.size() > kRecent || to_seconds(received_ns - recent_.front().at_ns) > kRecentSeconds) {
     recent_.erase(recent_.begin());
   }
-  believed_ = *std::min_element(recent_.begin(), recent_.end(), [&](const Sample& a, const Sample& b) {
+  accepted_ = *std::min_element(recent_.begin(), recent_.end(), [&](const Sample& a, const Sample& b) {
     return cost(a, received_ns) < cost(b, received_ns);
   });
   if (coarse_.empty() || to_seconds(received_ns - coarse_.back().at_ns) > kCoarseSeconds) {
-    coarse_.push_back(believed_);
+    coarse_.push_back(accepted_);
     if (coarse_.size() > kCoarse) coarse_.erase(coarse_.begin());
     estimate_drift();
   }
-  const double wanted = offset_from_base(believed_, received_ns);
+  const double wanted = offset_from_base(accepted_, received_ns);
   if (!settled()) {
-    step_to(believed_);
+    step_to(accepted_);
     return true;
   }
   anchor_offset_ = mapped_offset(received_ns);
@@ -140,7 +140,7 @@ void ClockSync::estimate_drift() {
 
 void ClockSync::step_to(const Sample& best) {
   base_ns_ = best.offset_ns;
-  believed_ = best;
+  accepted_ = best;
   anchor_ns_ = best.at_ns;
   anchor_offset_ = 0.0;
   correction_ = 0.0;
@@ -163,8 +163,8 @@ std::int64_t ClockSync::to_peer(std::int64_t host_ns) const {
 
 double ClockSync::error_bound(std::int64_t peer_ns) const {
   if (!known_) return 1e9;
-  const double not_worked_off = std::abs(offset_from_base(believed_, peer_ns) - mapped_offset(peer_ns));
-  return 0.5 * believed_.round_trip + kDriftBound * std::max(to_seconds(peer_ns - believed_.at_ns), 0.0) +
+  const double not_worked_off = std::abs(offset_from_base(accepted_, peer_ns) - mapped_offset(peer_ns));
+  return 0.5 * accepted_.round_trip + kDriftBound * std::max(to_seconds(peer_ns - accepted_.at_ns), 0.0) +
          not_worked_off;
 }
 

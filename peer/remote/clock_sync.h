@@ -56,7 +56,7 @@ class ClockSync {
 
   std::vector<Sample> recent_;  // newest last
   std::vector<Sample> coarse_;  // the best of each couple of seconds, for the drift
-  Sample believed_{};
+  Sample accepted_{};
   std::int64_t base_ns_ = 0;    // offsets are kept as doubles relative to this one
   std::int64_t anchor_ns_ = 0;  // peer's clock: the mapping is a line from here
   double anchor_offset_ = 0.0;  // s from base

@@ -9,12 +9,12 @@ namespace slosh {
 /// come. One thread, or one lock.
 class KeptState {
  public:
-  /// `heard`: what the channel has now, the same as before or another.
-  void note(const BodyMessage& heard) {
+  /// `newest`: what the channel has now, the same as before or another.
+  void note(const BodyMessage& newest) {
     // A world that was paused says so with the step that was told while it ran.
     const bool same =
-        heard.bodies.tick == state_.bodies.tick && heard.run == state_.run && heard.rate == state_.rate;
-    if (!same || !any_) state_ = heard;
+        newest.bodies.tick == state_.bodies.tick && newest.run == state_.run && newest.rate == state_.rate;
+    if (!same || !any_) state_ = newest;
     any_ = true;
   }
   const BodyMessage& state() const { return state_; }

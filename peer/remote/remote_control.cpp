@@ -55,7 +55,7 @@ void RemoteLink::say_hello() {
   say(hello);
 }
 
-wire::Fault RemoteLink::heard(std::uint64_t type, wire::ByteView payload) {
+wire::Fault RemoteLink::receive(std::uint64_t type, wire::ByteView payload) {
   if (step_ == LinkStep::kEnded) return {};
   switch (static_cast<wire::ControlType>(type)) {
     case wire::ControlType::kWelcome:

@@ -156,7 +156,7 @@ void RemoteLink::on_stream(ConnectionId, std::int64_t stream, std::span<const st
   if (step_ == LinkStep::kEnded) return;
   if (stream != control_) return take_scene(bytes, end_of_stream);
   const wire::Fault fault = splitter_.feed(
-      bytes, [this](std::uint64_t type, wire::ByteView payload) { return heard(type, payload); });
+      bytes, [this](std::uint64_t type, wire::ByteView payload) { return receive(type, payload); });
   if (fault && step_ != LinkStep::kEnded) bad_host(fault, "a message");
 }
 

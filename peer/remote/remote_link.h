@@ -115,7 +115,7 @@ class RemoteLink final : public EndpointEvents {
 
   // remote_control.cpp: what is said; remote_grips.cpp: about grips.
   void say_hello();
-  wire::Fault heard(std::uint64_t type, wire::ByteView payload);
+  wire::Fault receive(std::uint64_t type, wire::ByteView payload);
   wire::Fault on_welcome(wire::ByteView payload);
   wire::Fault on_refused(wire::ByteView payload);
   void refused(wire::RefusalCode code, const std::string& words);

@@ -10,7 +10,7 @@ constexpr std::size_t kFewestFrames = 4;  // whatever their size
 constexpr std::size_t kMaxBodies = 2048;
 constexpr std::size_t kMaxHands = 1024;    // samples of one hand
 constexpr std::size_t kMaxGrips = 64;      // as the wire has it
-constexpr double kHandBelieved = 0.2;      // s for which a hand without updates is where it was
+constexpr double kHandFresh = 0.2;         // s for which a hand without updates is where it was
 constexpr double kSameTime = 1e-9;         // s
 constexpr double kBetweenBodies = 0.0035;  // s: denser states tell a snapshot nothing
 
@@ -135,7 +135,7 @@ void SnapshotHistory::place_hands(BodySnapshot& rigid) const {
                                         [](const HandSample& s, double t) { return s.time < t; });
     if (after == samples.begin()) continue;
     const HandSample& before = *std::prev(after);
-    if (!before.engaged || rigid.time - before.time > kHandBelieved) continue;
+    if (!before.engaged || rigid.time - before.time > kHandFresh) continue;
     const bool between = after != samples.end() && after->engaged;
     rigid.grips[i].handle =
         between ? mixed(before.pose, after->pose, share_between(before.time, after->time, rigid.time))

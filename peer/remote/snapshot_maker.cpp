@@ -151,7 +151,7 @@ void SnapshotMaker::run() {
     {
       // Before the pieces: what was offered before these states is decoded when they are compared with it.
       const std::lock_guard lock(mutex_);
-      if (history_.has_bodies()) bodies_heard_to_ = history_.last_body_time();
+      if (history_.has_bodies()) bodies_received_to_ = history_.last_body_time();
     }
     {
       std::unique_lock lock(inbox_mutex_);
@@ -215,9 +215,9 @@ std::optional<Between> SnapshotMaker::next_of_film(bool to_the_end) {
   const double reached = std::max(particles_to, bodies_to);
   const bool both = time <= particles_to + 1e-9 && time <= bodies_to + 1e-9;
   // Particles that wait to be decoded are not late: a busy machine's film is made later, not worse.
-  const double heard_to = std::min(bodies_to, bodies_heard_to_);
+  const double received_to = std::min(bodies_to, bodies_received_to_);
   const bool one_is_late = (time <= particles_to && time + kWithoutBodies < particles_to) ||
-                           (time <= heard_to && time + kWithoutParticles < heard_to);
+                           (time <= received_to && time + kWithoutParticles < received_to);
   if (!both && !one_is_late && !(to_the_end && time <= reached)) return std::nullopt;
   std::optional<Between> between = history_.at(time);
   if (!between) return std::nullopt;

@@ -110,7 +110,7 @@ class SnapshotMaker {
   StreamDecoders decoders_;
   FilmTimes times_;
   std::uint32_t film_run_ = 0;
-  double bodies_heard_to_ = 0.0;  // simulated s, when the pieces that are decoded now were taken
+  double bodies_received_to_ = 0.0;  // simulated s, when the pieces that are decoded now were taken
   std::int64_t feedback_due_ns_ = 0;
   std::thread thread_;
 };

@@ -31,9 +31,9 @@ void BodyReplica::restart(const RigidMotion& motion) noexcept {
   pace_ = glm::dvec3(0.0);
   history_.forget();
   has_word_ = loaded_ = false;
-  load_ = heard_ = FluidLoad{};
+  load_ = received_load_ = FluidLoad{};
   std::fill(ledgers_.begin(), ledgers_.end(), Ledger{});
-  excess_ = work_ = work_heard_ = slosh_work_ = slosh_heard_ = stored_ = 0.0;
+  excess_ = work_ = work_received_ = slosh_work_ = slosh_received_ = stored_ = 0.0;
   started_ = true;
 }
 
@@ -41,7 +41,7 @@ double BodyReplica::time_constant() const noexcept {
   return std::max(tuning_.least_time, tuning_.round_trips * delay_.round_trip);
 }
 
-void BodyReplica::hear(const HostMotion& host) noexcept {
+void BodyReplica::receive(const HostMotion& host) noexcept {
   if (!started_) return restart(host.motion);
   if (host.ack_ns == 0) return;
   word_ = host;
@@ -54,10 +54,10 @@ void BodyReplica::compare(std::int64_t now_ns) noexcept {
   has_word_ = false;
   RigidMotion then;
   double work = 0.0;
-  if (!history_.at(word_.ack_ns, then, work, slosh_heard_)) return;
+  if (!history_.at(word_.ack_ns, then, work, slosh_received_)) return;
   pending_ = difference(word_.motion, then);
   foresee_slosh(then.twist.linear);
-  work_heard_ = word_.work;
+  work_received_ = word_.work;
   work_ += word_.work - work;
   history_.correct_work(word_.work - work);
 }
@@ -110,8 +110,8 @@ void BodyReplica::swing(const glm::dvec3& change, double dt) noexcept {
 }
 
 void BodyReplica::set_load(const FluidLoad& load) noexcept {
-  heard_ = made_safe(load);
-  if (!loaded_) load_ = heard_;
+  received_load_ = made_safe(load);
+  if (!loaded_) load_ = received_load_;
   loaded_ = true;
 }
 
@@ -121,11 +121,11 @@ void BodyReplica::follow_load(double dt) noexcept {
   const double time = tuning_.load_round_trips * (delay_.round_trip + delay_.jitter);
   const double share = time > dt ? 1.0 - std::exp(-dt / time) : 1.0;
   // As what is foreseen is by the newest masses, so is the body.
-  const double foreseen = share + heard_.foreseen * (1.0 - share);
+  const double foreseen = share + received_load_.foreseen * (1.0 - share);
   const double goes_on = 1.0 - std::exp(-dt / kGoesOnTaken);
   for_each_load_field([&](const auto& row) {
     auto& at = load_.*row.field;
-    const auto& to = heard_.*row.field;
+    const auto& to = received_load_.*row.field;
     switch (row.taken) {
       case LoadField::kAtOnce:
         at = to;
@@ -247,9 +247,9 @@ void BodyReplica::settle(const std::vector<ReplicaHand>& hands, double dt) noexc
       debtor = &ledger;
     }
   }
-  const double unbelieved = (1.0 - believed_) * (work_ - work_heard_ - slosh_since());
-  if (unbelieved > worst) {
-    work_ -= take(unbelieved);
+  const double untrusted = (1.0 - load_trust_) * (work_ - work_received_ - slosh_since());
+  if (untrusted > worst) {
+    work_ -= take(untrusted);
     return;
   }
   if (debtor == nullptr) return;

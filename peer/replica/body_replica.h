@@ -72,7 +72,7 @@ class BodyReplica {
 
   /// A state of the host's: what it differs by from what was here when its input was read is taken over bit
   /// by bit.
-  void hear(const HostMotion& host) noexcept;
+  void receive(const HostMotion& host) noexcept;
 
   /// One step of `dt` s that ends at `now_ns`. `trust`: of the fluid's model, 0–1, by its age.
   void advance(const std::vector<ReplicaHand>& hands, double dt, std::int64_t now_ns,
@@ -95,16 +95,16 @@ class BodyReplica {
   /// J that the load put into the body since restart(): the host's count as far as updates came, and from
   /// there on what it gave here.
   double work() const noexcept { return work_; }
-  double work_heard() const noexcept { return work_heard_; }  ///< J: of that the host's count alone
+  double work_received() const noexcept { return work_received_; }  ///< J: of that the host's count alone
   /// Share, 0–1, of the load's work here since the host's update that is trusted; the rest is taken out of
   /// the motion.
-  void believe_load(double share) noexcept { believed_ = share; }
+  void trust_load(double share) noexcept { load_trust_ = share; }
   /// J of the load's work that is trusted; of what came since the host's update the own hands' part alone, as
   /// nobody knows yet what the others did about theirs.
-  double work_believed() const noexcept {
+  double work_trusted() const noexcept {
     const double own = 1.0 - shared_, slosh = own * slosh_since(),
-                 since = own * (work_ - work_heard_) - slosh;
-    return work_heard_ + slosh + (since > 0.0 ? believed_ * since : since);
+                 since = own * (work_ - work_received_) - slosh;
+    return work_received_ + slosh + (since > 0.0 ? load_trust_ * since : since);
   }
   /// J that the body's motion and its couplings hold, those of other sites as soft as they are here. As of
   /// the last advance().
@@ -112,7 +112,7 @@ class BodyReplica {
 
  private:
   /// J that what swings gave here since the host's update: what it had, so none of it is uncertain.
-  double slosh_since() const noexcept { return slosh_work_ - slosh_heard_; }
+  double slosh_since() const noexcept { return slosh_work_ - slosh_received_; }
   Matrix6 mass_matrix() const noexcept;
   void compare(std::int64_t now_ns) noexcept;
   void follow_load(double dt) noexcept;
@@ -128,8 +128,8 @@ class BodyReplica {
   std::vector<ReplicaGrip> grips_;
   ReplicaTuning tuning_;
   LoopDelay delay_;
-  FluidLoad load_;   // as it acts
-  FluidLoad heard_;  // as the host last said it
+  FluidLoad load_;           // as it acts
+  FluidLoad received_load_;  // as the host last said it
   bool loaded_ = false;
   RigidMotion now_;
   HostMotion word_;  // of the host, not compared yet
@@ -150,10 +150,10 @@ class BodyReplica {
   double shared_ = 0.0;  // of all stiffness, what hands of other sites have
   double excess_ = 0.0;
   double work_ = 0.0;
-  double work_heard_ = 0.0;
-  double slosh_work_ = 0.0;   // J that what swings gave here
-  double slosh_heard_ = 0.0;  // of it by the moment of the host's update
-  double believed_ = 1.0;
+  double work_received_ = 0.0;
+  double slosh_work_ = 0.0;      // J that what swings gave here
+  double slosh_received_ = 0.0;  // of it by the moment of the host's update
+  double load_trust_ = 1.0;
   double stored_ = 0.0;
   bool started_ = false;
 };

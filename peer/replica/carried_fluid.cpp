@@ -39,14 +39,14 @@ void CarriedFluid::restart() noexcept {
   lifts_share_ = 1.0;
 }
 
-void CarriedFluid::hear(const Acting& acting) noexcept {
+void CarriedFluid::update(const Acting& acting) noexcept {
   if (acting.elapsed > 0.0) {
     const glm::dvec3 force = acting.tells_fluid ? acting.fluid : acting.force;
     for (int i = 0; i < 3; ++i) {
       SloshFinder& finder = finders_[static_cast<std::size_t>(i)];
       finder.tell(acting.told_mass[i], acting.told_drag[i]);
-      finder.hear(acting.elapsed, acting.before[i], acting.now[i],
-                  force[i] - lifts_share_ * lifts_ * down_[i]);
+      finder.add_sample(acting.elapsed, acting.before[i], acting.now[i],
+                        force[i] - lifts_share_ * lifts_ * down_[i]);
     }
     const double keep = std::exp(-acting.elapsed / kLiftMemory);
     lifts_square_ = keep * lifts_square_ + acting.elapsed * lifts_ * lifts_;
@@ -153,8 +153,8 @@ void CarriedFluid::put_into(FluidLoad& load, Vector6& rest, const Vector6& pace,
     ResidueFollower& residue = residue_[row];
     load.late[i] = still;
     if (acting.elapsed > 0.0) {
-      residue.hear(acting.elapsed, still, round_trip + kGoesOnTaken,
-                   kMaxGoesOn * carried_ * glm::length(body_.gravity));
+      residue.update(acting.elapsed, still, round_trip + kGoesOnTaken,
+                     kMaxGoesOn * carried_ * glm::length(body_.gravity));
       const double passing = still - residue.lasting();
       passing_[i] = passing + lifts_share_ * lifts_ * down_[i];
       load.late[i] -= left_out * passing;

@@ -31,7 +31,7 @@ class CarriedFluid {
   explicit CarriedFluid(const ReplicaBody& body) : body_(body) { restart(); }
 
   void restart() noexcept;
-  void hear(const Acting& acting) noexcept;
+  void update(const Acting& acting) noexcept;
   /// Puts what swings in the place of the line in `load`, as far as it explains more, times `share` (0–1),
   /// and takes it out of `rest`: the wrench that acts besides couplings, to which the answer to `pace`
   /// (linear and angular acceleration) is added. What no model explains of the fluid is left in it as what is

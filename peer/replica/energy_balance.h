@@ -11,13 +11,13 @@ namespace slosh {
 /// J: what all persons put in and what acts besides gave the body at the host, less what dampers used up. The
 /// persons' own counts are added by who has them.
 struct EnergyBalance {
-  double stored = 0.0;      ///< in the couplings when this began, less what had been counted by then
-  double forgotten = 0.0;   ///< that nothing here holds any more
-  double work_heard = 0.0;  ///< BodyReplica::work_heard() at the tick before
-  double lent = 0.0;        ///< that loads took and nobody had put in
+  double stored = 0.0;         ///< in the couplings when this began, less what had been counted by then
+  double forgotten = 0.0;      ///< that nothing here holds any more
+  double work_received = 0.0;  ///< BodyReplica::work_received() at the tick before
+  double lent = 0.0;           ///< that loads took and nobody had put in
 
-  /// Without the persons' counts. `believed`: BodyReplica::work_believed().
-  double without_persons(double believed) const noexcept { return stored + believed - forgotten + lent; }
+  /// Without the persons' counts. `trusted`: BodyReplica::work_trusted().
+  double without_persons(double trusted) const noexcept { return stored + trusted - forgotten + lent; }
 
   /// What was put in and is held nowhere went into dampers: it does not come out again, or a body that
   /// bounces would live for long on what it took to bring it there. `held`: BodyReplica::stored();
@@ -37,9 +37,9 @@ struct EnergyBalance {
   /// and what it gives their couplings by that nobody put in. No hand is to pay for it; but what comes back
   /// of it is no gift. `balance`: called where it counts.
   template <class Balance>
-  void lend(double heard, Balance&& balance) noexcept {
-    const double gave = heard - work_heard;
-    work_heard += gave;
+  void lend(double received, Balance&& balance) noexcept {
+    const double gave = received - work_received;
+    work_received += gave;
     if (gave > 0.0) lent -= std::min(lent, gave);
     if (gave >= 0.0) return;
     // What was thought used up and was on its way comes first: a load that sank and is lifted again.

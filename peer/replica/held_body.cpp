@@ -33,7 +33,7 @@ HeldBody::HeldBody(const ReplicaBody& body, std::vector<ReplicaGrip> grips, cons
       grips_(poses_of(grips)),
       hands_(grips.size()),
       speeds_(grips.size()),
-      guards_(grips.size()),
+      controllers_(grips.size()),
       load_work_(body, grips),
       load_(body_, grips_, tuning.follows_slosh),
       used_(grips.size()) {
@@ -50,17 +50,17 @@ void HeldBody::restart() noexcept {
   fallback_.restart();
 }
 
-void HeldBody::hear(const HostUpdate& word) noexcept {
-  const double elapsed = started_ ? to_seconds(word.now_ns - heard_ns_) : 0.0;
-  const FluidLoad load = load_.load_of(
-      word, {started_, heard_time_, heard_, replica_.shared() > 0.0, pace_ * delay_.delay().round_trip});
-  load_work_.hear(word);
-  heard_time_ = word.time;
-  heard_ = word.motion;
-  heard_ns_ = word.now_ns;
+void HeldBody::receive(const HostUpdate& word) noexcept {
+  const double elapsed = started_ ? to_seconds(word.now_ns - received_ns_) : 0.0;
+  const FluidLoad load = load_.load_of(word, {started_, received_time_, received_, replica_.shared() > 0.0,
+                                              pace_ * delay_.delay().round_trip});
+  load_work_.receive(word);
+  received_time_ = word.time;
+  received_ = word.motion;
+  received_ns_ = word.now_ns;
   pace_ = word.pace;
   step_ = std::min(word.time_step, LoadEstimator::kLongestStep);
-  since_heard_ = 0.0;
+  since_received_ = 0.0;
   std::int64_t ack_ns = 0;
   counted_ = true;
   for (std::size_t g = 0; g < hands_.size() && g < word.hands.size(); ++g) {
@@ -68,8 +68,8 @@ void HeldBody::hear(const HostUpdate& word) noexcept {
     ReplicaHand& hand = hands_[g];
     used_[g] = said.handle;
     if (!said.engaged)
-      used_[g] = {heard_.position + heard_.orientation * (grips_[g].position - body_.center),
-                  heard_.orientation * grips_[g].orientation};
+      used_[g] = {received_.position + received_.orientation * (grips_[g].position - body_.center),
+                  received_.orientation * grips_[g].orientation};
     if (hand.own) {
       if (said.engaged && said.ack_ns != 0)
         ack_ns = ack_ns == 0 ? said.ack_ns : std::min(ack_ns, said.ack_ns);
@@ -93,8 +93,8 @@ void HeldBody::hear(const HostUpdate& word) noexcept {
     return;
   }
   const LoopDelay usual = delay_.delay();
-  replica_.believe_load(load_.note_disturbance(load, replica_.load(), replica_.shared() > 0.0,
-                                               pace_ * (usual.round_trip + usual.jitter), elapsed));
+  replica_.trust_load(load_.note_disturbance(load, replica_.load(), replica_.shared() > 0.0,
+                                             pace_ * (usual.round_trip + usual.jitter), elapsed));
   replica_.set_load(load);
   if (ack_ns == 0) return;
   delay_.note(to_seconds(word.now_ns - ack_ns), elapsed);
@@ -103,16 +103,16 @@ void HeldBody::hear(const HostUpdate& word) noexcept {
   // What a hand does within a long step that its twist did not foresee acts at the host in the next.
   const double unforeseen = std::max(word.time_step - kTwistForesees, 0.0);
   replica_.set_delay({pace_ * delay.round_trip + unforeseen, pace_ * delay.jitter});
-  replica_.hear({word.motion, ack_ns, load_work_.work(), load_.carried.states()});
+  replica_.receive({word.motion, ack_ns, load_work_.work(), load_.carried.states()});
 }
 
 /// A body that moves and springs that are stretched already when this begins have energy to give.
 void HeldBody::begin_count(const HostUpdate& word) noexcept {
   energy_.stored = load_work_.kinetic();
   energy_.forgotten = energy_.lent = 0.0;
-  energy_.work_heard = replica_.work_heard();
+  energy_.work_received = replica_.work_received();
   for (std::size_t g = 0; g < hands_.size(); ++g) {
-    energy_.stored -= hands_[g].own ? guards_[g].energy() : hands_[g].energy;
+    energy_.stored -= hands_[g].own ? controllers_[g].energy() : hands_[g].energy;
     if (g >= word.hands.size()) continue;
     const Wrench& on_hand = word.hands[g].on_hand;
     const CouplingGains& k = gains_[g];
@@ -132,21 +132,21 @@ GripState HeldBody::grip(std::size_t g) const noexcept {
 /// host used it counts only up to what the host itself has in the coupling: so a body that rests on something
 /// still holds it, and one that follows does not drag it back.
 GripState HeldBody::late_grip(std::size_t g) const noexcept {
-  const double on = std::min(since_heard_ - ahead_, std::max(kCarriedOn, step_));
-  const Pose body{heard_.position + on * heard_.twist.linear,
-                  rotate_by(heard_.orientation, on * heard_.twist.angular)};
+  const double on = std::min(since_received_ - ahead_, std::max(kCarriedOn, step_));
+  const Pose body{received_.position + on * received_.twist.linear,
+                  rotate_by(received_.orientation, on * received_.twist.angular)};
   const glm::dvec3 arm = body.orientation * (grips_[g].position - body_.center);
   GripState state;
   state.pose = {body.position + arm, body.orientation * grips_[g].orientation};
-  state.twist = {heard_.twist.linear + glm::cross(heard_.twist.angular, arm), heard_.twist.angular};
+  state.twist = {received_.twist.linear + glm::cross(received_.twist.angular, arm), received_.twist.angular};
   const ReplicaHand& hand = hands_[g];
   if (!hand.own || !hand.engaged) return state;
   // The hand as it was used, carried on with the grip.
-  const glm::dvec3 old_arm = heard_.orientation * (grips_[g].position - body_.center);
-  const glm::dvec3 used = state.pose.position + used_[g].position - heard_.position - old_arm;
+  const glm::dvec3 old_arm = received_.orientation * (grips_[g].position - body_.center);
+  const glm::dvec3 used = state.pose.position + used_[g].position - received_.position - old_arm;
   const glm::dquat used_turn =
       rotate_by(state.pose.orientation,
-                rotation_between(heard_.orientation * grips_[g].orientation, used_[g].orientation));
+                rotation_between(received_.orientation * grips_[g].orientation, used_[g].orientation));
   const glm::dvec3 since = hand.handle.position - used;
   const glm::dvec3 turned = rotation_between(used_turn, hand.handle.orientation);
   const auto left_out = [](double stretched, double most) {
@@ -164,23 +164,23 @@ GripState HeldBody::late_grip(std::size_t g) const noexcept {
   return state;
 }
 
-Wrench HeldBody::guard(std::size_t g, const Wrench& wanted, const Pose& hand, const Twist& twist, double dt,
+Wrench HeldBody::limit(std::size_t g, const Wrench& wanted, const Pose& hand, const Twist& twist, double dt,
                        double most_damping, double pace) noexcept {
-  const double credit = balance() - guards_[g].energy() + (counted_ ? 0.0 : kUncounted);
+  const double credit = balance() - controllers_[g].energy() + (counted_ ? 0.0 : kUncounted);
   // What others hold is felt across the delay; alone on the body nothing is.
   const double share = std::max({replica_.shared(), load_.disturbance, fallback_.spring});
   const double damping = std::min(share / pace * replica_.damping(g), most_damping);
   const double turning = share / pace * replica_.rotational_damping(g);
   const Wrench damped{wanted.force - damping * twist.linear, wanted.torque - turning * twist.angular};
-  const Wrench safe = guards_[g].guard(damped, hand, twist, dt, credit, most_damping);
-  fallback_.note(guards_[g].fires());
+  const Wrench safe = controllers_[g].limit(damped, hand, twist, dt, credit, most_damping);
+  fallback_.note(controllers_[g].fires());
   return safe;
 }
 
 double HeldBody::balance() const noexcept {
-  double sum = energy_.without_persons(replica_.work_believed());
+  double sum = energy_.without_persons(replica_.work_trusted());
   for (std::size_t j = 0; j < hands_.size(); ++j)
-    sum += hands_[j].own ? guards_[j].energy() : hands_[j].energy;
+    sum += hands_[j].own ? controllers_[j].energy() : hands_[j].energy;
   return sum;
 }
 
@@ -190,8 +190,8 @@ void HeldBody::advance(std::span<const OwnHand> own, double dt, std::int64_t now
     ReplicaHand& hand = hands_[g];
     if (g < own.size() && own[g].here) {
       if (!hand.own) {
-        guards_[g].restart(own[g].handle);
-        energy_.stored += hand.energy - guards_[g].energy();
+        controllers_[g].restart(own[g].handle);
+        energy_.stored += hand.energy - controllers_[g].energy();
       }
       hand.own = true;
       hand.engaged = own[g].engaged;
@@ -199,16 +199,16 @@ void HeldBody::advance(std::span<const OwnHand> own, double dt, std::int64_t now
       hand.twist = own[g].twist;
     } else if (hand.own) {
       hand = ReplicaHand{};
-      hand.energy = guards_[g].energy();
+      hand.energy = controllers_[g].energy();
       speeds_[g].forget();
-    } else if (since_heard_ < kCarriedOn) {
+    } else if (since_received_ < kCarriedOn) {
       hand.handle = extrapolate(hand.handle, hand.twist, dt);
     }
   }
-  since_heard_ += dt;
-  const double trust = std::clamp(1.0 - (since_heard_ - kLoadHolds) / kLoadFades, 0.0, 1.0);
+  since_received_ += dt;
+  const double trust = std::clamp(1.0 - (since_received_ - kLoadHolds) / kLoadFades, 0.0, 1.0);
   replica_.advance(hands_, dt, now_ns, trust);
-  energy_.lend(replica_.work_heard(), [&] { return balance(); });
+  energy_.lend(replica_.work_received(), [&] { return balance(); });
   energy_.forget_surplus(balance(), replica_.stored(), pace_ * delay_.delay().round_trip, dt);
   fallback_.advance(dt);
 }

@@ -36,7 +36,7 @@ inline GripState between(const GripState& a, const GripState& b, double share) {
   return mixed;
 }
 
-/// A tick is: hear() what came; for each own hand grip(), the coupling to it, guard(), sent(); then
+/// A tick is: receive() what came; for each own hand grip(), the coupling to it, limit(), sent(); then
 /// advance(). Reads no clock, neither allocates nor locks once made; one thread.
 class HeldBody {
  public:
@@ -45,9 +45,10 @@ class HeldBody {
   /// The next update is taken as it is: at first, after a reset, a pause, a silence.
   void restart() noexcept;
   bool started() const noexcept { return started_; }
-  void hear(const HostUpdate& word) noexcept;
-  /// How the fluid answers to the body, before hear() of the same state or a newer one: its derivatives, its
-  /// added mass and the trust in them count. What acts besides them is worked out from how the body moves.
+  void receive(const HostUpdate& word) noexcept;
+  /// How the fluid answers to the body, before receive() of the same state or a newer one: its derivatives,
+  /// its added mass and the trust in them count. What acts besides them is worked out from how the body
+  /// moves.
   void set_fluid(const FluidLoad& model) noexcept { load_.fluid = made_safe(model); }
 
   /// Where an own hand's coupling goes to, at the moment of the last advance().
@@ -55,7 +56,7 @@ class HeldBody {
   /// The wrench for own hand `g` in place of its coupling's `wanted`: damped for the delay, and so that no
   /// more comes out of this site than went in. `hand`: as it is read; its `twist`, `dt` and `most_damping`
   /// (N·s/m that the device holds) by the device's own time, of which a second is `pace` s of the body's.
-  Wrench guard(std::size_t g, const Wrench& wanted, const Pose& hand, const Twist& twist, double dt,
+  Wrench limit(std::size_t g, const Wrench& wanted, const Pose& hand, const Twist& twist, double dt,
                double most_damping, double pace = 1.0) noexcept;
   /// Grip `g`'s coupling is that from now on, here as at the host.
   void set_gains(std::size_t g, const CouplingGains& gains) noexcept {
@@ -64,13 +65,13 @@ class HeldBody {
   }
   /// What own hand `g` was sent, and J that its coupling was given besides the hand's motion.
   void sent(std::size_t g, const Wrench& wrench, double ramp_work = 0.0) noexcept {
-    guards_[g].sent(wrench, ramp_work);
+    controllers_[g].sent(wrench, ramp_work);
   }
   /// On by `dt` s of the body's time, to `now_ns`.
   void advance(std::span<const OwnHand> own, double dt, std::int64_t now_ns) noexcept;
 
   /// J that the person at own grip `g` and the hold put in.
-  double energy(std::size_t g) const noexcept { return guards_[g].energy(); }
+  double energy(std::size_t g) const noexcept { return controllers_[g].energy(); }
   /// J that may still come out at the own hands: what all persons put in and what acts besides gave the body
   /// at the host, less what dampers used up.
   double balance() const noexcept;
@@ -90,15 +91,15 @@ class HeldBody {
   std::vector<Pose> grips_;  // in the mesh frame
   std::vector<CouplingGains> gains_;
   std::vector<ReplicaHand> hands_;
-  std::vector<VelocityWindow> speeds_;       // of other sites' hands
-  std::vector<PassivityController> guards_;  // of own ones
+  std::vector<VelocityWindow> speeds_;            // of other sites' hands
+  std::vector<PassivityController> controllers_;  // of own ones
   LoopDelayEstimate delay_;
-  RigidMotion heard_;
-  double heard_time_ = 0.0;
+  RigidMotion received_;
+  double received_time_ = 0.0;
   bool counted_ = false;  // all who hold the body
-  std::int64_t heard_ns_ = 0;
-  double pace_ = 1.0;         // HostUpdate::pace
-  double since_heard_ = 0.0;  // s
+  std::int64_t received_ns_ = 0;
+  double pace_ = 1.0;            // HostUpdate::pace
+  double since_received_ = 0.0;  // s
   double ahead_ = 0.0;  // s until the moment of the update, when it came: a slow host's is of a step's end
   bool started_ = false;
   LoadWork load_work_;

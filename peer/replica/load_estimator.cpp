@@ -76,7 +76,7 @@ FluidLoad LoadEstimator::load_of(const HostUpdate& word, const Before& before) n
     acting.told_mass[i] = fluid.added_mass[row][row];
     acting.told_drag[i] = -fluid.d_velocity[row][row];
   }
-  if (follows_slosh) carried.hear(acting);
+  if (follows_slosh) carried.update(acting);
   // What others do within the delay is not known, and a mode that went by it would be driven by it.
   const double alone = follows_slosh && !(before.shared) ? 1.0 : 0.0;
   const double most = std::clamp(elapsed, 0.0, kLongestStep) / Fallback::kChange;

@@ -1,5 +1,5 @@
 // What acts on a held body besides its couplings, by how the host says that it moves, and how far that is to
-// be believed.
+// be trusted.
 #pragma once
 
 #include <algorithm>
@@ -35,7 +35,7 @@ struct LoadEstimator {
   /// contacts.
   FluidLoad load_of(const HostUpdate& word, const Before& before) noexcept;
   /// Notes by how much more `load` differs from the one `before` than was told of it. `late`: s of the body's
-  /// time of a round trip and what it varies by; `elapsed`: s. Returns how far the load's work is believed,
+  /// time of a round trip and what it varies by; `elapsed`: s. Returns how far the load's work is trusted,
   /// 0–1.
   double note_disturbance(const FluidLoad& load, const FluidLoad& before, bool shared, double late,
                           double elapsed) noexcept;

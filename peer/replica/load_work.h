@@ -25,7 +25,7 @@ class LoadWork {
     known_ = false;
     work_ = 0.0;
   }
-  void hear(const HostUpdate& word) noexcept {
+  void receive(const HostUpdate& word) noexcept {
     const RigidMotion& now = word.motion;
     const double elapsed = word.time - time_;
     const double kinetic = kinetic_energy(now);

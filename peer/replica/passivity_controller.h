@@ -46,7 +46,7 @@ class PassivityController {
   /// more came out than there was a damper on `twist` of at most `most` N·s/m, what the device holds. A share
   /// that was cut grows back over kReturns; meanwhile a damper, of `most` too, stands for what it would take
   /// from the hand's motion. `dt` s > 0 to the next sending.
-  Wrench guard(const Wrench& wanted, const Pose& hand, const Twist& twist, double dt, double credit,
+  Wrench limit(const Wrench& wanted, const Pose& hand, const Twist& twist, double dt, double credit,
                double most) noexcept {
     energy_ -= glm::dot(sent_.force, hand.position - before_.position) +
                glm::dot(sent_.torque, rotation_between(before_.orientation, hand.orientation));
@@ -109,7 +109,7 @@ class PassivityController {
   }
 
   double energy() const noexcept { return energy_; }  ///< J that the person and the hold put in so far
-  bool fires() const noexcept { return fires_; }      ///< in the last guard()
+  bool fires() const noexcept { return fires_; }      ///< in the last limit()
 
  private:
   /// What others put in and used up, on balance.

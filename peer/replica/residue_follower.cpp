@@ -61,7 +61,7 @@ void ResidueFollower::learn(double elapsed, double told, double horizon) noexcep
     }
 }
 
-void ResidueFollower::hear(double elapsed, double told, double horizon, double most) noexcept {
+void ResidueFollower::update(double elapsed, double told, double horizon, double most) noexcept {
   if (!(elapsed > 0.0) || !std::isfinite(told) || !std::isfinite(horizon)) return restart();
   if (!known_) begin(told);
   time_ += elapsed;

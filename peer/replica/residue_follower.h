@@ -27,7 +27,7 @@ class ResidueFollower {
   }
   /// `told`: N, the mean over the last `elapsed` s, > 0; `horizon`: s ≥ 0 from there to when it is felt;
   /// `most`: N, ≥ 0, by which it goes on beyond what was told.
-  void hear(double elapsed, double told, double horizon, double most) noexcept;
+  void update(double elapsed, double told, double horizon, double most) noexcept;
   bool known() const noexcept { return known_; }
   double foreseen() const noexcept { return foreseen_; }  ///< N, a horizon after the last update
   double lasting() const noexcept { return low_[0]; }     ///< N: over a second

@@ -71,7 +71,7 @@ void SloshFinder::lighten(double share) noexcept {
   f_.twice *= share;
 }
 
-void SloshFinder::hear(double dt, double before, double now, double force) noexcept {
+void SloshFinder::add_sample(double dt, double before, double now, double force) noexcept {
   const double change = now - before, acceleration = change / dt;
   if (!(dt > 0.0) || !std::isfinite(acceleration) || !std::isfinite(force)) return restart(most_);
   if (!known_) {
@@ -91,7 +91,7 @@ void SloshFinder::hear(double dt, double before, double now, double force) noexc
   f_.to(force, low);
   const SloshSums::Common x{1.0, -a_.twice, -v_.twice};
   sums_.add(dt, keep, x, f_.twice);
-  if (!prior_.vessel) record_.hear(dt, a_.twice, v_.twice, f_.twice, search_.mode());
+  if (!prior_.vessel) record_.add_sample(dt, a_.twice, v_.twice, f_.twice, search_.mode());
   for (std::size_t i = 0; i < kPaces; ++i) {
     for (std::size_t j = 0; j < kDampings; ++j) {
       Candidate& c = bank_[i][j];

@@ -36,7 +36,7 @@ class SloshFinder {
   void lighten(double share) noexcept;
   /// Over the last `dt` s the body went from velocity `before` to `now`, and the fluid put the mean force
   /// `force` on it.
-  void hear(double dt, double before, double now, double force) noexcept;
+  void add_sample(double dt, double before, double now, double force) noexcept;
 
   const SloshMode& mode() const noexcept { return mode_; }
   const SloshState& state() const noexcept { return state_; }  ///< at the newest update

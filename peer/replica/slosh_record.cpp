@@ -5,8 +5,8 @@
 
 namespace slosh {
 
-void SloshRecord::hear(double dt, double acceleration, double velocity, double force,
-                       const SloshMode& mode) noexcept {
+void SloshRecord::add_sample(double dt, double acceleration, double velocity, double force,
+                             const SloshMode& mode) noexcept {
   open_.dt += dt;
   open_.acceleration += dt * acceleration;
   open_.velocity += dt * velocity;

@@ -16,7 +16,8 @@ class SloshRecord {
   void restart() noexcept { *this = SloshRecord{}; }
   /// m/s², m/s, N over `dt` s, all through one low-pass. What is forgotten was moving `mode`, or, where that
   /// has no mass, nothing.
-  void hear(double dt, double acceleration, double velocity, double force, const SloshMode& mode) noexcept;
+  void add_sample(double dt, double acceleration, double velocity, double force,
+                  const SloshMode& mode) noexcept;
   /// All forces were `share` times as large.
   void lighten(double share) noexcept;
   /// How many blocks have come; the last `kBlocks` are there.

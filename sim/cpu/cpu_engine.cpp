@@ -52,7 +52,7 @@ class CpuEngine final : public ParticleEngine {
   }
   void wrenches(std::span<Wrench> out) override {
     std::copy(s_.found.begin(), s_.found.end(), out.begin());
-    if (!s_.context.plan.guards_walls()) return;
+    if (!s_.context.plan.clamps_penetration()) return;
     for (std::size_t b = 0; b < out.size(); ++b) {
       if (s_.wanted[b]) out[b] = out[b] + s_.taken[b];
     }
@@ -144,7 +144,7 @@ class CpuEngine final : public ParticleEngine {
  private:
   // What walls took from particles when they moved last acts on the bodies now.
   void take_impulses(double dt) {
-    if (!s_.context.plan.guards_walls()) return;
+    if (!s_.context.plan.clamps_penetration()) return;
     for (std::size_t b = 0; b < s_.taken.size(); ++b) {
       const std::span<std::int64_t> words(s_.impulses.data() + kImpulseWords * b, kImpulseWords);
       if (s_.wanted[b]) s_.taken[b] = impulse_wrench(words, s_.context.impulse_units, dt);

@@ -92,15 +92,15 @@ void drag_fluid(PassContext& context, ThreadTeam& team, FluidParticles& fluid,
                 const BoundaryParticles& moving);
 
 /// The bodies of the penetration clamp in a sub-step, and what it takes from particles.
-struct WallGuards {
-  std::span<const GuardedBody> bodies;
+struct WallClamps {
+  std::span<const ClampBody> bodies;
   std::span<const glm::dvec3> centers;  ///< m, world, of mass as the sub-step ends, one a body
   std::span<std::int64_t> impulses;     ///< as ImpulseSums; added to
 };
 
 /// Leap-frog (section 3.1) over `dt` s: v(t+½) from forces and gravity, x(t+1), no further than to the walls,
 /// then the new cell or retirement.
-void integrate_fluid(PassContext& context, ThreadTeam& team, FluidParticles& fluid, const WallGuards& guards,
+void integrate_fluid(PassContext& context, ThreadTeam& team, FluidParticles& fluid, const WallClamps& clamps,
                      double dt);
 
 }  // namespace slosh

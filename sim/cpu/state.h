@@ -40,7 +40,7 @@ struct CpuState {
   std::size_t fluid_count;   // without probes
   std::vector<char> wanted;  // one a body: its wrench is summed
   bool fixed_measured = false;
-  std::vector<DistanceField> fields;  // of the bodies that particles are guarded against
+  std::vector<DistanceField> fields;  // of the bodies that particles are clamped against
   std::vector<DistanceFieldView> views;
   ImpulseSums impulses;           // what walls take in this sub-step
   std::vector<Wrench> taken;      // and what they took in the one before, one a body

@@ -59,7 +59,7 @@ class CudaEngine final : public ParticleEngine {
     s_.prepared.assign(bodies.begin(), bodies.end());
     begun_dt_ = dt;
     // What walls took from particles when they moved last goes into this sub-step's report.
-    s_.guards.hand_over(s_.report.impulses(), s_.check, s_.stream);
+    s_.clamps.hand_over(s_.report.impulses(), s_.check, s_.stream);
   }
   void run(PassId id, const PassInputs& inputs) override {
     if (s_.idle()) return;
@@ -100,7 +100,7 @@ class CudaEngine final : public ParticleEngine {
 
   bool save(ParticleState& out, ImpulseSums& impulses) const override {
     const HostPacks packs = fetch_packs(s_.fluid, s_.check, s_.stream);
-    impulses = fetch_impulses(s_.guards, s_.check, s_.stream);
+    impulses = fetch_impulses(s_.clamps, s_.check, s_.stream);
     if (s_.check.failed()) return false;
     to_state(packs, s_.constants.grid, out);
     out.broken = broken_before_ + broken(packs, s_.constants.grid);
@@ -120,7 +120,7 @@ class CudaEngine final : public ParticleEngine {
     s_.check.ok(cudaStreamSynchronize(s_.stream), "waiting for the step");
     s_.fluid.write(packs, s_.check, s_.stream);
     s_.sent_probes.write_slots(slots, s_.check, s_.stream);
-    s_.guards.write(impulses, s_.check, s_.stream);
+    s_.clamps.write(impulses, s_.check, s_.stream);
     s_.report.clear_status(s_.check, s_.stream);
     s_.sorted_ahead = false;
     status_ = 0;
@@ -165,7 +165,7 @@ class CudaEngine final : public ParticleEngine {
       const float4 x = packs.x[p], v = packs.v[p];
       sums.add(packs.kind[p], {x.x, x.y, x.z}, {v.x, v.y, v.z}, v.w);
     });
-    sums.add(fetch_impulses(s_.guards, s_.check, s_.stream));
+    sums.add(fetch_impulses(s_.clamps, s_.check, s_.stream));
     return sums.finish(s_.fluid_count, broken_before_ + broken(packs, s_.constants.grid));
   }
 
@@ -195,7 +195,7 @@ class CudaEngine final : public ParticleEngine {
       if (s_.constants.plan.has(PassId::kPressureSolve) && !s_.prepared[b].free) continue;
       wrenches[b] = wrenches[b] + s_.report.got_wrench(i).wrench();
     }
-    if (s_.guards.size() > 0) {
+    if (s_.clamps.size() > 0) {
       for (const std::uint32_t b : s_.sums.bodies()) {
         std::int64_t words[kImpulseWords];
         s_.report.got_impulses(b, words);

@@ -3,7 +3,7 @@
 
 #include "sim/cuda/device_particles.h"
 #include "sim/cuda/host_particles.h"
-#include "sim/cuda/wall_guards.h"
+#include "sim/cuda/wall_clamps.h"
 
 namespace slosh::cuda {
 
@@ -30,9 +30,9 @@ inline HostPacks fetch_packs(const FluidBuffers& fluid, CallCheck& check, cudaSt
 }
 
 /// What bodies have still to be given by walls; zeros after a failure.
-inline ImpulseSums fetch_impulses(const WallGuards& guards, CallCheck& check, cudaStream_t stream) {
-  ImpulseSums sums(guards.impulses().size());
-  fetch(guards.impulses().data(), sums.data(), sums.size(), check, stream);
+inline ImpulseSums fetch_impulses(const WallClamps& clamps, CallCheck& check, cudaStream_t stream) {
+  ImpulseSums sums(clamps.impulses().size());
+  fetch(clamps.impulses().data(), sums.data(), sums.size(), check, stream);
   return sums;
 }
 

@@ -13,8 +13,8 @@
 #include "sim/columns.h"
 #include "sim/passes/body_drag/body_drag.h"
 #include "sim/run_constants.h"
+#include "sim/walls/penetration_clamp.h"
 #include "sim/walls/surface_motion.h"
-#include "sim/walls/wall_guard.h"
 
 namespace slosh::cuda {
 
@@ -148,8 +148,8 @@ struct DeviceBody {
 };
 
 /// A body of the penetration clamp in a sub-step.
-struct DeviceGuard {
-  GuardedBody body;
+struct DeviceClamp {
+  ClampBody body;
   glm::dvec3 center{0.0};  ///< of mass as the sub-step ends, m, world
 };
 
@@ -216,10 +216,10 @@ struct ProbeOutput {
   std::uint32_t* slots = nullptr;
 };
 /// The bodies of the penetration clamp in a sub-step, and what it takes from particles.
-struct GuardView {
+struct ClampView {
   std::uint32_t count = 0;  ///< of bodies; 0: no clamp
   std::uint32_t any_fast = 0;
-  const DeviceGuard* bodies = nullptr;
+  const DeviceClamp* bodies = nullptr;
   unsigned long long* impulses = nullptr;  ///< as ImpulseSums; added to
   ImpulseUnits units;
 };
@@ -228,7 +228,7 @@ void launch_hand_over(std::int64_t* impulses, std::int64_t* out, std::size_t wor
 /// integrate.cu: the leap-frog over `dt` s, in place, no further than to the walls, with the new keys. Probes
 /// stay where they are.
 void launch_integrate(const StepConstants& constants, const ParticleKind* kinds, const SortedFluid& fluid,
-                      float dt, float max_speed, const GuardView& guard, const ProbeOutput& probes,
+                      float dt, float max_speed, const ClampView& clamps, const ProbeOutput& probes,
                       std::uint32_t* status, cudaStream_t stream);
 
 /// wrench.cu: Eq 5, 6 and 9 on the particles of `surface` whose body is wanted, to `local`'s force and,

@@ -20,10 +20,10 @@ CudaState::CudaState(const RunConstants& constants_in, const ParticleStart& star
   space.allocate(static_cast<std::uint32_t>(largest), std::bit_width(constants.grid.retired_key()), check);
   kinds.upload(constants.kinds, check);
   sums.plan(constants.plan, start, bodies.size(), check);
-  guards.plan(constants, start, bodies.size(), check);
+  clamps.plan(constants, start, bodies.size(), check);
   viscous.plan(constants.plan, start, bodies.size(), sums, check);
   pressure.plan(constants.plan, start, bodies.size(), sums, check);
-  report.plan(sums.bodies().size(), guards.handed_bytes(), probes.size(), check);
+  report.plan(sums.bodies().size(), clamps.handed_bytes(), probes.size(), check);
   sent.allocate(bodies.size(), check);
   sent_probes.allocate(probes, check);
 }

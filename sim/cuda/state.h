@@ -7,7 +7,7 @@
 #include "sim/cuda/body_exchange.h"
 #include "sim/cuda/pass_clock.h"
 #include "sim/cuda/step_report.h"
-#include "sim/cuda/wall_guards.h"
+#include "sim/cuda/wall_clamps.h"
 #include "sim/passes/implicit_viscosity/cuda.h"
 #include "sim/passes/pass.h"
 #include "sim/passes/pressure_solve/cuda.h"
@@ -46,7 +46,7 @@ struct CudaState {
   SortSpace space;
   DeviceBuffer<ParticleKind> kinds;
   WrenchSums sums;
-  WallGuards guards;
+  WallClamps clamps;
   StepReport report;
   ViscousSolver viscous;
   PressureSolver pressure;

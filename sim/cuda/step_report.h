@@ -18,7 +18,7 @@ class StepReport {
   StepReport(const StepReport&) = delete;
   StepReport& operator=(const StepReport&) = delete;
 
-  /// `sums`: of WrenchSums; `impulse_bytes`: WallGuards::handed_bytes().
+  /// `sums`: of WrenchSums; `impulse_bytes`: WallClamps::handed_bytes().
   void plan(std::size_t sums, std::size_t impulse_bytes, std::size_t probes, CallCheck& check);
 
   // On the GPU:

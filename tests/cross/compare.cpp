@@ -126,13 +126,13 @@ void compare_momenta(const Tank& tank, const Plan& plan, int steps, double toler
   Snapshot now;
   Diagnostics before = gpu.diagnostics();
   for (int i = 0; i < steps; ++i) {
-    const glm::dvec3 handed = before.guarded_impulse;  // walls have it from the step before
+    const glm::dvec3 handed = before.clamp_impulse;  // walls have it from the step before
     step(gpu, kPaddleHeight);
     gpu.fill(now);
     const Diagnostics after = gpu.diagnostics();
     glm::dvec3 given = dt * before.mass * tank.scene.gravity;
     for (const BodyState& body : now.rigid.bodies) given -= dt * body.fluid.force;
-    given += handed - after.guarded_impulse;
+    given += handed - after.clamp_impulse;
     worst =
         std::max(worst, glm::length(after.momentum - before.momentum - given) / (dt * 9.81 * before.mass));
     before = after;

@@ -155,7 +155,7 @@ void compare_squeezed() {
   }
 }
 
-void compare_guarded() {
+void compare_clamped() {
   std::printf("fluid thrown at the walls of a tank that a hand moves\n");
   const Tank tank = thrown_tank();
   World cpu = world_on(Backend::kCpu, tank);
@@ -165,22 +165,22 @@ void compare_guarded() {
   for (int after = 0; steps < 100 && after < 2; ++steps) {
     step(cpu, 0.0);
     step(gpu, 0.0);
-    after += cpu.diagnostics().guarded > 0;
+    after += cpu.diagnostics().clamped > 0;
   }
   const Diagnostics a = cpu.diagnostics(), b = gpu.diagnostics();
-  std::printf("  %d steps, put back: CPU %llu, GPU %llu\n", steps, static_cast<unsigned long long>(a.guarded),
-              static_cast<unsigned long long>(b.guarded));
-  expect_true("particles are put back on both", a.guarded > 0 && b.guarded > 0);
+  std::printf("  %d steps, put back: CPU %llu, GPU %llu\n", steps, static_cast<unsigned long long>(a.clamped),
+              static_cast<unsigned long long>(b.clamped));
+  expect_true("particles are put back on both", a.clamped > 0 && b.clamped > 0);
   expect_at_most("and as many, but for rounding",
-                 std::abs(static_cast<double>(b.guarded) / static_cast<double>(a.guarded) - 1.0), 0.02);
+                 std::abs(static_cast<double>(b.clamped) / static_cast<double>(a.clamped) - 1.0), 0.02);
   expect_at_most("impulse on its way to the walls / momentum",
-                 glm::length(a.guarded_impulse - b.guarded_impulse) / glm::length(a.momentum), 1e-3);
+                 glm::length(a.clamp_impulse - b.clamp_impulse) / glm::length(a.momentum), 1e-3);
   compare_worlds(cpu, gpu, 1e-2);
   for (int i = 0; i < 100; ++i) {
     step(cpu, 0.0);
     step(gpu, 0.0);
   }
-  expect_true("both say so", (cpu.take_status() & gpu.take_status() & kStatusGuarded) != 0);
+  expect_true("both say so", (cpu.take_status() & gpu.take_status() & kStatusClamped) != 0);
   for (const World* world : {&cpu, &gpu}) {
     Snapshot s;
     world->fill(s);
@@ -263,7 +263,7 @@ int main(int argc, char** argv) {
   compare_changed();
   compare_retired();
   compare_squeezed();
-  compare_guarded();
+  compare_clamped();
   repeat("fluid thrown at walls", thrown_tank(), 0.0);
   compare_restored("fluid thrown at walls", thrown_tank(), 0.0);
   return conclude();

@@ -10,16 +10,14 @@
 #include "scenes/load.h"
 #include "scenes/make/solid.h"
 #include "scenes/make/writer.h"
+#include "tests/support/contains.h"
 
 namespace slosh {
 namespace {
 
 using nlohmann::json;
+using test::contains;
 using test::Outcome;
-
-bool contains(const std::string& text, const std::string& part) {
-  return text.find(part) != std::string::npos;
-}
 
 /// A cup that a hand holds, with water in it.
 struct Cup {
@@ -44,8 +42,7 @@ struct Cup {
     const Pose grip{{0.0, 0.1 * size, 0.0}, {1.0, 0.0, 0.0, 0.0}};
     if (held) {
       writer.add_node("handle", -1, grip, {{"slosh", "grip"}, {"stiffness_n_m", 3000.0}}, node);
-      writer.add_hand(
-          "hand", "handle", [=](double) { return compose(pose, grip); }, 0.3);
+      writer.add_hand("hand", "handle", [=](double) { return compose(pose, grip); }, 0.3);
     }
     writer.add_camera({0.3, 0.4, 0.5}, {0.0, 0.05, 0.0}, 40.0);
     std::filesystem::create_directories(test::test_folder());

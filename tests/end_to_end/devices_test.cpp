@@ -6,15 +6,14 @@
 
 #include "peer/output/plot.h"
 #include "process.h"
+#include "tests/support/contains.h"
 
 namespace slosh {
 namespace {
 
+using test::contains;
 using test::Outcome;
 
-bool shows_text(const std::string& text, const std::string& words) {
-  return text.find(words) != std::string::npos;
-}
 std::string example() {
   return (std::filesystem::path(test::program()).parent_path().parent_path() / "lib" /
           "slosh_example_device.so")
@@ -26,9 +25,9 @@ TEST(DevicesCommand, HelpTeaches) {
        {std::vector<std::string>{"devices", "--help"}, {"devices", "test", "--help"}}) {
     const Outcome outcome = test::slosh(words);
     EXPECT_EQ(outcome.code, 0);
-    EXPECT_TRUE(shows_text(outcome.out, "Examples:"));
+    EXPECT_TRUE(contains(outcome.out, "Examples:"));
   }
-  EXPECT_TRUE(shows_text(test::slosh({"devices", "--help"}).out, "K < 2·b/T"));
+  EXPECT_TRUE(contains(test::slosh({"devices", "--help"}).out, "K < 2·b/T"));
 }
 
 TEST(DevicesCommand, TestsASimulatedHandAndPlotsIt) {
@@ -36,9 +35,9 @@ TEST(DevicesCommand, TestsASimulatedHandAndPlotsIt) {
   const Outcome outcome =
       test::slosh({"devices", "test", "operator:tight,correction=0", "--force", "2", "--out", "t"});
   EXPECT_EQ(outcome.code, 0) << outcome.err;
-  EXPECT_TRUE(shows_text(outcome.out, "At most 2.00 N")) << outcome.out;
-  EXPECT_TRUE(shows_text(outcome.out, "800.0 N/m")) << outcome.out;
-  EXPECT_TRUE(shows_text(outcome.out, "4.000 N·m/rad")) << outcome.out;
+  EXPECT_TRUE(contains(outcome.out, "At most 2.00 N")) << outcome.out;
+  EXPECT_TRUE(contains(outcome.out, "800.0 N/m")) << outcome.out;
+  EXPECT_TRUE(contains(outcome.out, "4.000 N·m/rad")) << outcome.out;
   EXPECT_GT(std::filesystem::file_size(test::test_folder() / "t" / "device_test.png"), 5000u);
   EXPECT_GT(std::filesystem::file_size(test::test_folder() / "t" / "device_test.csv"), 100000u);
 }
@@ -56,7 +55,7 @@ TEST(DevicesCommand, APluginGoesByTheWallClockOnly) {
   const Outcome outcome = test::slosh(
       {"play", "bucket", "--headless", "--no-render", "--unpaced", "--device", "plugin:" + example()});
   EXPECT_EQ(outcome.code, 1);
-  EXPECT_TRUE(shows_text(outcome.err, "--unpaced")) << outcome.err;
+  EXPECT_TRUE(contains(outcome.err, "--unpaced")) << outcome.err;
 }
 
 TEST(DevicesCommand, APluginIsPlayedWithAndSaysThatTheSceneAsksForMore) {
@@ -65,10 +64,10 @@ TEST(DevicesCommand, APluginIsPlayedWithAndSaysThatTheSceneAsksForMore) {
       test::slosh({"play", "bucket", "--headless", "--no-render", "--spacing", "0.014", "--seconds", "4",
                    "--device", "script", "--device", "plugin:" + example(), "--out", "o"});
   EXPECT_EQ(outcome.code, 0) << outcome.err;
-  EXPECT_TRUE(shows_text(outcome.err, "holds at most")) << outcome.err;
+  EXPECT_TRUE(contains(outcome.err, "holds at most")) << outcome.err;
   // It gives 0.5 N·m, and the bucket turns in its grip by more.
-  EXPECT_TRUE(shows_text(outcome.out, "all that its device gives")) << outcome.out;
-  EXPECT_TRUE(shows_text(outcome.out, "a device's force met its limit")) << outcome.out;
+  EXPECT_TRUE(contains(outcome.out, "all that its device gives")) << outcome.out;
+  EXPECT_TRUE(contains(outcome.out, "a device's force met its limit")) << outcome.out;
 }
 
 /// The bucket in the hands of two simulated people: it is carried, and nothing swings up.

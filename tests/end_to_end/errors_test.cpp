@@ -14,23 +14,21 @@
 #include "process.h"
 #include "scenes/load.h"
 #include "sim/math/format.h"
+#include "tests/support/contains.h"
 
 namespace slosh {
 namespace {
 
+using test::contains;
 using test::Outcome;
 using Arguments = std::vector<std::string>;
-
-bool has_text(const std::string& text, const std::string& part) {
-  return text.find(part) != std::string::npos;
-}
 
 /// Fails with `code`, and stderr says every one of `parts`; nothing crashes.
 void expect_error(const Arguments& arguments, int code, const std::vector<std::string>& parts) {
   const Outcome outcome = test::slosh(arguments);
   EXPECT_EQ(outcome.code, code) << outcome.err;
   for (const std::string& part : parts) {
-    EXPECT_TRUE(has_text(outcome.err, part)) << "'" << part << "' is not in:\n" << outcome.err;
+    EXPECT_TRUE(contains(outcome.err, part)) << "'" << part << "' is not in:\n" << outcome.err;
   }
 }
 
@@ -47,9 +45,8 @@ TEST(Errors, MisspeltWordsAreAnsweredWithTheNearest) {
   expect_error({"play", "--headles"}, 2, {"--headles", "Did you mean --headless?", "slosh play --help"});
   expect_error({"play", "--secnds=3"}, 2, {"Did you mean --seconds?"});
   // An option of other verbs: which.
-  expect_error(
-      {"check", "bucket", "--overwrite"}, 2,
-      {"--overwrite is an option of play, host, join, watch and replay", "slosh check --help"});
+  expect_error({"check", "bucket", "--overwrite"}, 2,
+               {"--overwrite is an option of play, host, join, watch and replay", "slosh check --help"});
   expect_error({"watch", "slosh://x", "--particles=100"}, 2, {"--particles is an option of play and host"});
   expect_error({"sweep", "spoon", "--set", "fluid.viscosity_pas=1,2", "--out", "swept"}, 1,
                {"Did you mean viscosity_pa_s?"});
@@ -78,9 +75,9 @@ TEST(Errors, AnAddressOrAPluginThatIsNoneIsSaidAtOnce) {
     const Outcome outcome = test::slosh(arguments);
     EXPECT_EQ(outcome.code, 1) << outcome.err;
     for (const std::string& part : parts)
-      EXPECT_TRUE(has_text(outcome.err, part)) << part << " in\n" << outcome.err;
+      EXPECT_TRUE(contains(outcome.err, part)) << part << " in\n" << outcome.err;
     for (const char* phase : {"measuring", "sampling", "settling"})
-      EXPECT_FALSE(has_text(outcome.err, phase)) << outcome.err;
+      EXPECT_FALSE(contains(outcome.err, phase)) << outcome.err;
   };
   at_once({"host", "bucket", "--listen", "here"}, {"'here'", "no port", "--listen"});
   at_once({"host", "bucket", "--listen", "127.0.0.1:99999"}, {"99999", "--listen"});
@@ -111,7 +108,7 @@ TEST(Errors, WhatCouldNotBePrintedIsSaid) {
   };
   for (const char* what : {"check bucket --json", "plan bucket", "scenes", "--help"}) {
     EXPECT_EQ(code(std::string(what) + " > /dev/full"), 1) << what;
-    EXPECT_TRUE(has_text(test::read_text(error), "standard output: not all could be written: No space"))
+    EXPECT_TRUE(contains(test::read_text(error), "standard output: not all could be written: No space"))
         << what;
   }
   const std::string ended = (test::test_folder() / "ended.txt").string();
@@ -195,7 +192,7 @@ TEST(Errors, CheckSaysEverythingAtOnceAndErrorsApartFromWarnings) {
   std::ofstream(test::test_folder() / "two.gltf") << bucket.dump();
   expect_error({"check", "two.gltf"}, 1,
                {"node 'water'", "density_kg_m3", "node 'table'", "friction", "2 errors"});
-  EXPECT_TRUE(has_text(test::slosh({"check", "two.gltf"}).out, "1 warning"));
+  EXPECT_TRUE(contains(test::slosh({"check", "two.gltf"}).out, "1 warning"));
   const Outcome outcome = test::slosh({"check", "two.gltf", "--json"});
   EXPECT_EQ(outcome.code, 1);
   const nlohmann::json said = nlohmann::json::parse(outcome.out);
@@ -232,7 +229,7 @@ TEST(Verbs, PlayTellsApartWhatSettlingLost) {
   EXPECT_GT(settling, 0.0);
   EXPECT_NEAR(summary["fluid_mass_kg"]["start"].get<double>(), (all - settling) * 1000.0 * std::pow(0.012, 3),
               1e-6);
-  EXPECT_TRUE(has_text(outcome.out, "spilled over the edge of the domain, while the world settled"))
+  EXPECT_TRUE(contains(outcome.out, "spilled over the edge of the domain, while the world settled"))
       << outcome.out;
 }
 
@@ -240,7 +237,7 @@ TEST(Verbs, ScenesListsEveryShippedScene) {
   const Outcome outcome = test::slosh({"scenes"});
   EXPECT_EQ(outcome.code, 0) << outcome.err;
   for (const char* name : {"bucket", "spoon", "pour", "spin", "pool", "probe"}) {
-    EXPECT_TRUE(has_text(outcome.out, name)) << name;
+    EXPECT_TRUE(contains(outcome.out, name)) << name;
   }
 }
 
@@ -249,14 +246,14 @@ TEST(Verbs, EveryShippedSceneChecksAndPlans) {
     const Outcome check = test::slosh({"check", name});
     EXPECT_EQ(check.code, 0) << check.err;
     EXPECT_EQ(check.out.rfind("ok", 0), 0u) << check.out;
-    EXPECT_TRUE(has_text(check.out, "litres"));
+    EXPECT_TRUE(contains(check.out, "litres"));
     const Outcome plan = test::slosh({"plan", name});
     EXPECT_EQ(plan.code, 0) << plan.err;
-    EXPECT_TRUE(has_text(plan.out, "density")) << plan.out;
+    EXPECT_TRUE(contains(plan.out, "density")) << plan.out;
     for (const char* number :
          {"settles 1 s before the run", "m of fluid", "compresses the fluid by", "sound number",
           "viscous number", "of fluid and", "MB", "a step          about", "on this machine"})
-      EXPECT_TRUE(has_text(plan.out, number)) << number << " in " << plan.out;
+      EXPECT_TRUE(contains(plan.out, number)) << number << " in " << plan.out;
   }
 }
 
@@ -264,10 +261,10 @@ TEST(Verbs, HelpExplainsWithExamples) {
   const Outcome all = test::slosh({"--help"});
   EXPECT_EQ(all.code, 0);
   for (const char* verb : {"play", "scenes", "check", "plan"}) {
-    EXPECT_TRUE(has_text(all.out, verb));
+    EXPECT_TRUE(contains(all.out, verb));
     const Outcome one = test::slosh({verb, "--help"});
     EXPECT_EQ(one.code, 0);
-    EXPECT_TRUE(has_text(one.out, "Example")) << verb;
+    EXPECT_TRUE(contains(one.out, "Example")) << verb;
   }
   // No line runs on: what options are for is wrapped, the rest written so.
   std::istringstream verbs(all.out);
@@ -277,8 +274,8 @@ TEST(Verbs, HelpExplainsWithExamples) {
     std::istringstream lines(test::slosh({verb, "--help"}).out);
     for (std::string line; std::getline(lines, line);) EXPECT_LE(line.size(), 120u) << verb << ": " << line;
   }
-  EXPECT_TRUE(has_text(test::slosh({"play", "--help"}).out, "wrench on the hand"));
-  EXPECT_TRUE(has_text(test::slosh({"--version"}).out, "slosh "));
+  EXPECT_TRUE(contains(test::slosh({"play", "--help"}).out, "wrench on the hand"));
+  EXPECT_TRUE(contains(test::slosh({"--version"}).out, "slosh "));
 }
 
 }  // namespace

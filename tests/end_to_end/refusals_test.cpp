@@ -6,15 +6,13 @@
 #include <fstream>
 
 #include "process.h"
+#include "tests/support/contains.h"
 
 namespace slosh {
 namespace {
 
+using test::contains;
 using test::Outcome;
-
-bool says(const std::string& text, const std::string& part) {
-  return text.find(part) != std::string::npos;
-}
 
 class Refusals : public ::testing::Test {
  protected:
@@ -33,7 +31,7 @@ TEST_F(Refusals, AFullFolderIsSaidBeforePassesAreMeasured) {
   write("full/passes.csv", "mine\n");
   const Outcome outcome = test::slosh({"report", "passes", "probe", "--quick", "--out", "full"});
   EXPECT_EQ(outcome.code, 1);
-  EXPECT_TRUE(says(outcome.err, "holds an earlier report's passes.csv")) << outcome.err;
+  EXPECT_TRUE(contains(outcome.err, "holds an earlier report's passes.csv")) << outcome.err;
   EXPECT_TRUE(outcome.out.empty()) << "nothing was measured: " << outcome.out;
   EXPECT_EQ(test::read_text(test::test_folder() / "full" / "passes.csv"), "mine\n");
 }
@@ -43,7 +41,7 @@ TEST_F(Refusals, ATableThatIsNoneLeavesNoFolder) {
   for (const char* kind : {"error", "stability"}) {
     const Outcome outcome = test::slosh({"report", kind, "--from", "bad.csv", "--out", "drawn"});
     EXPECT_EQ(outcome.code, 1) << kind;
-    EXPECT_TRUE(says(outcome.err, "bad.csv")) << outcome.err;
+    EXPECT_TRUE(contains(outcome.err, "bad.csv")) << outcome.err;
     EXPECT_FALSE(there("drawn")) << kind;
   }
 }
@@ -52,13 +50,13 @@ TEST_F(Refusals, AReportWhoseRunsWereAllRefusedHasFailed) {
   const Outcome outcome = test::slosh({"report", "error", "--quick", "--case", "stokes", "--model", "paper",
                                        "--spacing", "0.9", "--out", "refused"});
   EXPECT_EQ(outcome.code, 1) << outcome.err << outcome.out;
-  EXPECT_TRUE(says(outcome.err, "every run was refused")) << outcome.err;
+  EXPECT_TRUE(contains(outcome.err, "every run was refused")) << outcome.err;
 }
 
 TEST_F(Refusals, AHeadsetWithoutAPictureIsNotPassedOver) {
   const Outcome outcome = test::slosh({"play", "probe", "--headless", "--vr", "--no-render", "--out", "out"});
   EXPECT_EQ(outcome.code, 2);
-  EXPECT_TRUE(says(outcome.err, "--no-render excludes --vr")) << outcome.err;
+  EXPECT_TRUE(contains(outcome.err, "--no-render excludes --vr")) << outcome.err;
   EXPECT_FALSE(there("out"));
 }
 
@@ -66,14 +64,14 @@ TEST_F(Refusals, ARoomThatIsNotThereIsNotPassedOver) {
   const Outcome outcome =
       test::slosh({"play", "probe", "--headless", "--environment", "nowhere.hdr", "--out", "out"});
   EXPECT_EQ(outcome.code, 2);
-  EXPECT_TRUE(says(outcome.err, "there is no file 'nowhere.hdr'")) << outcome.err;
+  EXPECT_TRUE(contains(outcome.err, "there is no file 'nowhere.hdr'")) << outcome.err;
   EXPECT_FALSE(there("out"));
 }
 
 TEST_F(Refusals, APlanWhoseStepCannotBeTakenHasFailed) {
   const Outcome outcome = test::slosh({"plan", "bucket", "--spacing", "0.3"});
   EXPECT_EQ(outcome.code, 1) << outcome.out;
-  EXPECT_TRUE(says(outcome.err, "a step: cannot be taken")) << outcome.err;
+  EXPECT_TRUE(contains(outcome.err, "a step: cannot be taken")) << outcome.err;
 }
 
 TEST_F(Refusals, AFlagTakesNoValue) {
@@ -84,7 +82,7 @@ TEST_F(Refusals, AFlagTakesNoValue) {
 TEST_F(Refusals, NameTheirSubject) {
   const Outcome outcome = test::slosh({"play", "probe", "--headless", "--no-render", "--device", "replay:"});
   EXPECT_EQ(outcome.code, 1);
-  EXPECT_TRUE(says(outcome.err, "slosh: --device: 'replay:' names no file.")) << outcome.err;
+  EXPECT_TRUE(contains(outcome.err, "slosh: --device: 'replay:' names no file.")) << outcome.err;
 }
 
 /// No line is ended that nobody began, and no sentence twice.
@@ -97,8 +95,8 @@ TEST_F(Refusals, AreOneSentenceAndNoMore) {
     const Outcome outcome = test::slosh(words);
     EXPECT_NE(outcome.code, 0) << words[0];
     EXPECT_FALSE(outcome.err.starts_with("\n")) << words[0];
-    EXPECT_FALSE(says(outcome.err, "\n\n")) << words[0] << ": " << outcome.err;
-    EXPECT_FALSE(says(outcome.err, "?.")) << words[0] << ": " << outcome.err;
+    EXPECT_FALSE(contains(outcome.err, "\n\n")) << words[0] << ": " << outcome.err;
+    EXPECT_FALSE(contains(outcome.err, "?.")) << words[0] << ": " << outcome.err;
   }
 }
 
@@ -106,10 +104,10 @@ TEST_F(Refusals, WhoLooksOnIsOfferedNothingThatTheyAreRefused) {
   const std::string watch = test::slosh({"watch", "--help"}).out, join = test::slosh({"join", "--help"}).out;
   for (const char* word :
        {"--device", "take [GRIP]", "release [GRIP]", "pause, continue, reset", "set gravity"}) {
-    EXPECT_FALSE(says(watch, word)) << word;
-    EXPECT_TRUE(says(join, word)) << word;
+    EXPECT_FALSE(contains(watch, word)) << word;
+    EXPECT_TRUE(contains(join, word)) << word;
   }
-  for (const char* word : {"who ", "status ", "quit "}) EXPECT_TRUE(says(watch, word)) << word;
+  for (const char* word : {"who ", "status ", "quit "}) EXPECT_TRUE(contains(watch, word)) << word;
 }
 
 }  // namespace

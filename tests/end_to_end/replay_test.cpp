@@ -5,15 +5,13 @@
 #include <fstream>
 
 #include "process.h"
+#include "tests/support/contains.h"
 
 namespace slosh {
 namespace {
 
+using test::contains;
 using test::Outcome;
-
-bool contains(const std::string& text, const std::string& part) {
-  return text.find(part) != std::string::npos;
-}
 
 TEST(ReplayVerb, ARecordedRunComesOutTheSameAndIsFilmed) {
   std::filesystem::remove_all(test::test_folder());

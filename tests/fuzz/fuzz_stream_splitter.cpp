@@ -10,21 +10,21 @@ using namespace slosh;
 
 namespace {
 
-struct Heard {
+struct Received {
   std::size_t messages = 0;
   std::size_t bytes = 0;
   std::uint64_t types = 0;
   std::string end;
-  bool operator==(const Heard&) const = default;
+  bool operator==(const Received&) const = default;
 };
 
-Heard hear(wire::ByteView stream, std::size_t piece) {
+Received receive(wire::ByteView stream, std::size_t piece) {
   wire::StreamSplitter splitter;
-  Heard heard;
+  Received received;
   const auto each = [&](std::uint64_t type, wire::ByteView payload) {
-    heard.messages += 1;
-    heard.bytes += payload.size();
-    heard.types = 31 * heard.types + type;
+    received.messages += 1;
+    received.bytes += payload.size();
+    received.types = 31 * received.types + type;
     test::take(wire::PeerControl{}, type, payload);
     return type == 255 ? wire::Fault{"type", "unwanted"} : wire::Fault{};
   };
@@ -33,8 +33,8 @@ Heard hear(wire::ByteView stream, std::size_t piece) {
     test::must(splitter.held() <= wire::kMaxControlMessage + 8, "no more than one message is kept");
     test::must(splitter.held() <= at + piece, "and no more than came");
   }
-  heard.end = splitter.finish().text();
-  return heard;
+  received.end = splitter.finish().text();
+  return received;
 }
 
 }  // namespace
@@ -43,7 +43,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   if (size == 0) return 0;
   const wire::ByteView stream(data + 1, size - 1);
   const std::size_t piece = 1 + data[0] % 64;
-  test::must(hear(stream, piece) == hear(stream, std::max<std::size_t>(stream.size(), 1)),
+  test::must(receive(stream, piece) == receive(stream, std::max<std::size_t>(stream.size(), 1)),
              "pieces make no difference");
   return 0;
 }

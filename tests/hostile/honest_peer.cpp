@@ -79,8 +79,7 @@ class HonestPeer::Line final : public EndpointEvents {
   void on_stream(ConnectionId, std::int64_t stream, std::span<const std::uint8_t> bytes, bool) override {
     if (stream != control_) return;
     const wire::Fault found = splitter_.feed(bytes, [&](std::uint64_t type, wire::ByteView payload) {
-      return wire::dispatch(
-          wire::HostControl{}, type, payload, [&]<class M>(const M& m) { heard(m); }, 0);
+      return wire::dispatch(wire::HostControl{}, type, payload, [&]<class M>(const M& m) { receive(m); }, 0);
     });
     if (found) fault = "the host's control stream: " + found.text();
   }
@@ -128,7 +127,7 @@ class HonestPeer::Line final : public EndpointEvents {
     }
   }
   template <class M>
-  void heard(const M& m) {
+  void receive(const M& m) {
     if constexpr (std::is_same_v<M, wire::Welcome>) {
       in = true;
       me_ = m.peer;

@@ -7,6 +7,8 @@ import os
 import sys
 import unicodedata
 
+import tree
+
 LIMIT = 110
 ENDS = (".cpp", ".h", ".cu", ".cuh")
 
@@ -24,16 +26,11 @@ def long_lines(path):
 
 def main(root):
     files = faults = 0
-    for folder, folders, names in os.walk(root):
-        folders[:] = [name for name in folders if not name.startswith(".") and name not in ("build", "out")]
-        for name in names:
-            if not name.endswith(ENDS):
-                continue
-            files += 1
-            path = os.path.join(folder, name)
-            for number, length in long_lines(path):
-                faults += 1
-                print(f"{os.path.relpath(path, root)}:{number}: has {length} columns, more than {LIMIT}: ./slosh format")
+    for path in tree.files(root, ENDS):
+        files += 1
+        for number, length in long_lines(os.path.join(root, path)):
+            faults += 1
+            print(f"{path}:{number}: has {length} columns, more than {LIMIT}: ./slosh format")
     print(f"{files} sources, {faults} faults")
     return 1 if faults or not files else 0
 

@@ -10,10 +10,11 @@ import os
 import re
 import sys
 
+import tree
+
 ENDINGS = (".h", ".cpp", ".cu", ".cuh", ".c", ".py", ".sh", ".md", ".txt", ".cmake", ".glsl", ".comp", ".frag", ".vert",
            ".slosh", ".json", ".yml", ".1")
 NAMES = {"slosh", "CMakeLists.txt"}
-LEFT_OUT = {".git", "build", "out", "shared"}
 EXEMPT = ("tests/notebook/", "tests/bench/results/", "tests/house/words.py", "tests/house/words_test.sh", "GLOSSARY.md")
 NOTEBOOK_PAGE = re.compile(r"\b\d{4}-\d\d-\d\d-[a-z0-9-]+(?:\.md|\.csv)|\bnotebook/\S+")
 # The start of a line within a comment or a quoted text that goes on.
@@ -69,15 +70,6 @@ WORD = re.compile("|".join(f"({pattern})" for pattern, _ in IDENTIFIERS))
 PHRASE = re.compile(r"\b(?:" + "|".join(f"({pattern})" for pattern, _ in PHRASES) + r")\b", re.IGNORECASE)
 
 
-def texts(root):
-    for folder, folders, files in os.walk(root):
-        folders[:] = sorted(f for f in folders if f not in LEFT_OUT and not f.startswith((".", "out-", "build-")))
-        for name in sorted(files):
-            path = os.path.relpath(os.path.join(folder, name), root).replace(os.sep, "/")
-            if (name.endswith(ENDINGS) or name in NAMES) and not path.startswith(EXEMPT):
-                yield path
-
-
 def faults_in(path, lines):
     """Of all lines joined by spaces, without what marks a comment, so that a phrase may be broken anywhere."""
     starts, parts, at = [], [], 0
@@ -95,7 +87,9 @@ def faults_in(path, lines):
 def main():
     root = sys.argv[1] if len(sys.argv) > 1 else "."
     faults, count = [], 0
-    for path in texts(root):
+    for path in tree.files(root, ENDINGS, NAMES):
+        if path.startswith(EXEMPT):
+            continue
         with open(os.path.join(root, path), encoding="utf-8", errors="replace") as file:
             faults += faults_in(path, file.read().splitlines())
         count += 1

@@ -21,7 +21,7 @@ ReplicaBody bucket() {
 /// at 2.17.
 TEST(CarriedFluid, AVesselsSwingIsKnownByItsWeight) {
   CarriedFluid fluid(bucket());
-  fluid.hear({0.0, {}, {}, {0.0, -3.2 * 9.81, 0.0}, true, {0.0, -2.4 * 9.81, 0.0}});
+  fluid.update({0.0, {}, {}, {0.0, -3.2 * 9.81, 0.0}, true, {0.0, -2.4 * 9.81, 0.0}});
   for (const std::size_t axis : {0u, 2u}) {
     EXPECT_NEAR(fluid.finder(axis).mode().mass, 0.43 * 2.4, 1e-6);
     EXPECT_NEAR(fluid.finder(axis).mode().pace / (2.0 * std::numbers::pi), 2.17, 0.02);
@@ -36,7 +36,7 @@ TEST(CarriedFluid, AVesselsSwingIsKnownByItsWeight) {
 TEST(CarriedFluid, WhatIsLiftedOrNotToldIsNoVessel) {
   for (const bool told : {true, false}) {
     CarriedFluid fluid(bucket());
-    fluid.hear({0.0, {}, {}, {0.0, -3.0, 0.0}, told, {0.0, told ? 5.0 : -5.0, 0.0}});
+    fluid.update({0.0, {}, {}, {0.0, -3.0, 0.0}, told, {0.0, told ? 5.0 : -5.0, 0.0}});
     for (std::size_t axis = 0; axis < 3; ++axis) EXPECT_EQ(fluid.finder(axis).share(), 0.0);
   }
 }
@@ -51,7 +51,7 @@ TEST(CarriedFluid, WhatIsPouredOutIsFollowedWhatGoesToAndFroIsNot) {
     for (double t = 0.0; t < to; t += kWord) {
       const double told = -weight(t);
       const Acting acting{t > 0.0 ? kWord : 0.0, {}, {}, {0.0, told + kOwn, 0.0}, true, {0.0, told, 0.0}};
-      fluid.hear(acting);
+      fluid.update(acting);
       FluidLoad load;
       Vector6 rest{0.0, told + kOwn, 0.0, 0.0, 0.0, 0.0};
       fluid.put_into(load, rest, Vector6{}, acting, 1.0, 0.2);
@@ -81,7 +81,7 @@ TEST(CarriedFluid, WhatIsPouredOutNoLongerSwings) {
   for (double t = 0.0; t < 3.0; t += kWord) {
     const Acting acting{t > 0.0 ? kWord : 0.0,         {},   {},
                         {0.0, -weighs(t) - 7.85, 0.0}, true, {0.0, -weighs(t), 0.0}};
-    fluid.hear(acting);
+    fluid.update(acting);
     FluidLoad load;
     Vector6 rest{0.0, acting.force.y, 0.0, 0.0, 0.0, 0.0};
     fluid.put_into(load, rest, Vector6{}, acting, 1.0, 0.2);
@@ -106,7 +106,7 @@ TEST(CarriedFluid, WhatIsShakenUpAndDownWeighsWhatItDid) {
                         told - glm::dvec3(0.0, 7.85, 0.0),
                         true,
                         told};
-    fluid.hear(acting);
+    fluid.update(acting);
     FluidLoad load;
     Vector6 rest{0.0, acting.force.y, 0.0, 0.0, 0.0, 0.0};
     fluid.put_into(load, rest, {0.0, pace, 0.0, 0.0, 0.0, 0.0}, acting, 1.0, 0.2);

@@ -56,14 +56,14 @@ TEST(CouplingAtADistance, FluidCarriedByManyIsSteadyWithJitterAndLossApartAndTog
 
 /// Where a passivity controller acts the force goes and comes slowly: a bucket whose weight two hands take
 /// over where the balance is empty. 24 and 80 steps when each packet's worth was given at once.
-TEST(CouplingAtADistance, AGuardThatActsDoesNotRattle) {
+TEST(CouplingAtADistance, AControllerThatActsDoesNotRattle) {
   for (Case c : known_breakers()) {
     if (c.load != Load::kCarried) continue;
     c.round_trip = 0.3;
     c.seconds = 6.0;
     const Outcome r = run(c, Scheme::kReplica);
-    std::printf("%s: %d steps above 1 N, guards firing in %.1f %% of the ticks\n", c.name.c_str(), r.steps,
-                1e2 * r.fired);
+    std::printf("%s: %d steps above 1 N, controllers acting in %.1f %% of the ticks\n", c.name.c_str(),
+                r.steps, 1e2 * r.fired);
     EXPECT_GT(r.fired, 0.0) << c.name << ": it acts here";
     EXPECT_LE(r.steps, 20) << c.name;
   }

@@ -35,7 +35,7 @@ struct Outcome {
 
 /// A person who only holds on, 0.1 s away from a host where another hand swings the body from rest at `pace`
 /// Hz by up to 5 cm; that one's site counts no energy for it.
-Outcome held_by(double pace, bool guarded) {
+Outcome held_by(double pace, bool limited) {
   const CouplingGains gains{1000.0, 30.0, 10.0, 0.3};
   HeldBody held(body(), {{Pose{}, gains}, {Pose{}, gains}});
   const ArmImpedance arm{1.5, 6.0, 120.0};
@@ -70,12 +70,12 @@ Outcome held_by(double pace, bool guarded) {
       said[0] = {true, own[0].handle, {}, i < 110 ? 0 : to_nanoseconds(now - 0.1) + 1, true, 0.0};
       said[1] = {true, {word.motion.position, {1, 0, 0, 0}}, {{-force, 0.0, 0.0}, {}}, 0, true, 0.0};
       word.hands = said;
-      held.hear(word);
+      held.receive(word);
     }
     const GripState grip = held.grip(0);
     const Wrench wanted = coupling_wrench_on_hand(gains, own[0].handle, own[0].twist, grip.pose, grip.twist);
-    felt = held.guard(0, wanted, own[0].handle, own[0].twist, kHeldTick, 500.0);
-    if (!guarded) felt = wanted;
+    felt = held.limit(0, wanted, own[0].handle, own[0].twist, kHeldTick, 500.0);
+    if (!limited) felt = wanted;
     held.sent(0, felt);
     held.advance(own, kHeldTick, to_nanoseconds(now + kHeldTick) + 1);
     outcome.peak = std::max(outcome.peak, glm::length(felt.force));
@@ -88,14 +88,14 @@ Outcome held_by(double pace, bool guarded) {
 TEST(HeldBody, AnotherHandThatPutNothingInMovesNobody) {
   for (const double pace : {0.5, 2.0, 5.0}) {
     const Outcome bare = held_by(pace, false);
-    const Outcome guarded = held_by(pace, true);
+    const Outcome limited = held_by(pace, true);
     std::printf(
-        "%.1f Hz: %.1f mJ and %.1f N without the guard, %.2f mJ and %.1f N with it, firing %.0f %% %s\n",
-        pace, 1e3 * bare.out, bare.peak, 1e3 * guarded.out, guarded.peak, 100.0 * guarded.fired,
-        guarded.fell_back ? "fell back" : "");
+        "%.1f Hz: %.1f mJ and %.1f N without the controller, %.2f mJ and %.1f N with it, firing %.0f %% %s\n",
+        pace, 1e3 * bare.out, bare.peak, 1e3 * limited.out, limited.peak, 100.0 * limited.fired,
+        limited.fell_back ? "fell back" : "");
     EXPECT_GT(bare.out, 0.01);
-    EXPECT_LE(guarded.out, 1e-3);
-    EXPECT_LE(guarded.peak, 1.05 * bare.peak);
+    EXPECT_LE(limited.out, 1e-3);
+    EXPECT_LE(limited.peak, 1.05 * bare.peak);
   }
 }
 
@@ -132,11 +132,11 @@ TEST(HeldBody, TheSpringToALateWordIsNotStretchedByTheDelay) {
                  0.0};
       said[1] = {true, {word.motion.position, {1, 0, 0, 0}}, {}, 0, true, now < 1.0 ? -20.0 * now : 0.0};
       word.hands = said;
-      held.hear(word);
+      held.receive(word);
       const GripState grip = held.grip(0);
       const Wrench wanted =
           coupling_wrench_on_hand(gains, own[0].handle, own[0].twist, grip.pose, grip.twist);
-      const Wrench felt = held.guard(0, wanted, own[0].handle, own[0].twist, kHeldTick, kHolds);
+      const Wrench felt = held.limit(0, wanted, own[0].handle, own[0].twist, kHeldTick, kHolds);
       held.sent(0, felt);
       held.advance(own, kHeldTick, to_nanoseconds(now + kHeldTick) + 1);
       last = felt.force;
@@ -179,10 +179,10 @@ TEST(HeldBody, WhatDampersUsedUpIsForgotten) {
     word.time = now;
     const HostHand said{true, own[0].handle, {{-1000.0 * x, 0.0, 0.0}, {}}, word.now_ns, true, 0.0};
     word.hands = {&said, 1};
-    held.hear(word);
+    held.receive(word);
     const GripState grip = held.grip(0);
     const Wrench wanted = coupling_wrench_on_hand(gains, own[0].handle, own[0].twist, grip.pose, grip.twist);
-    held.sent(0, held.guard(0, wanted, own[0].handle, own[0].twist, kHeldTick, 500.0));
+    held.sent(0, held.limit(0, wanted, own[0].handle, own[0].twist, kHeldTick, 500.0));
     held.advance(own, kHeldTick, to_nanoseconds(now + kHeldTick) + 1);
     if (i == 2999) {
       EXPECT_GT(held.energy(0), 0.1);
@@ -216,8 +216,8 @@ TEST(HeldBody, WhatTheHostsStepTookBeyondAllThereWasIsLentAndPaidBack) {
       own[0].handle.position.x += force / gains.stiffness;
       const HostHand said{true, own[0].handle, {{-force, 0.0, 0.0}, {}}, word.now_ns, true, 0.0};
       word.hands = {&said, 1};
-      held.hear(word);
-      (void)held.guard(0, {}, own[0].handle, own[0].twist, kHeldTick, 500.0);
+      held.receive(word);
+      (void)held.limit(0, {}, own[0].handle, own[0].twist, kHeldTick, 500.0);
       held.sent(0, {});  // its device gives nothing, so that its person puts nothing in
       held.advance(own, kHeldTick, to_nanoseconds(now + kHeldTick) + 1);
     }
@@ -261,7 +261,7 @@ std::vector<double> swung_with(double rounds) {
         true, {{place(then), 0.0, 0.0}, {1, 0, 0, 0}}, {{told, 0.0, 0.0}, {}}, to_nanoseconds(then) + 1, true,
         0.0};
     word.hands = said;
-    held.hear(word);
+    held.receive(word);
     const GripState grip = held.grip(0);
     felt.push_back(
         coupling_wrench_on_hand(gains, own[0].handle, own[0].twist, grip.pose, grip.twist).force.x);
@@ -291,12 +291,12 @@ TEST(HeldBody, BeginsAnewAfterARestart) {
   const HostHand said{true, {}, {}, 0, true, 0.0};
   word.hands = {&said, 1};
   EXPECT_FALSE(held.started());
-  held.hear(word);
+  held.receive(word);
   EXPECT_EQ(held.grip(0).pose.position, word.motion.position);
   held.restart();
   EXPECT_FALSE(held.started());
   word.motion.position = {-1.0, 0.0, 0.0};
-  held.hear(word);
+  held.receive(word);
   EXPECT_EQ(held.grip(0).pose.position, word.motion.position);
 }
 

@@ -131,10 +131,10 @@ TEST_F(HudTest, WallsThatHoldAreNoWarningUnlessTheyCrush) {
   Hud hud(bare, facts());
   const auto vertices = [&](double time, std::uint32_t status) { return drawn_with(hud, time, status); };
   const int without = vertices(1.0, 0);
-  EXPECT_EQ(vertices(1.1, kStatusGuarded), without);
+  EXPECT_EQ(vertices(1.1, kStatusClamped), without);
   const int crushed = vertices(3.0, kStatusCompressed);
   EXPECT_GT(crushed, without);
-  EXPECT_GT(vertices(3.1, kStatusGuarded | kStatusCompressed), crushed) << "then both are said";
+  EXPECT_GT(vertices(3.1, kStatusClamped | kStatusCompressed), crushed) << "then both are said";
 }
 
 /// What left the world is counted in the snapshot and named by how; spilling is no warning.

@@ -16,8 +16,8 @@ namespace {
 constexpr double kControllerTick = 0.001;
 
 TEST(HeldBody, CountsWhatThePersonPutIn) {
-  PassivityController guard;
-  guard.restart({});
+  PassivityController controller;
+  controller.restart({});
   // Against a spring of 100 N/m for 0.1 m: 0.5 J, less what a tick holds on too long.
   Pose hand;
   double x = 0.0;
@@ -25,17 +25,17 @@ TEST(HeldBody, CountsWhatThePersonPutIn) {
     x += 1e-4;
     hand.position.x = x;
     const Wrench wanted{{-100.0 * x, 0.0, 0.0}, {}};
-    guard.sent(guard.guard(wanted, hand, {{0.1, 0.0, 0.0}, {}}, kControllerTick, 0.0, 100.0));
-    EXPECT_FALSE(guard.fires());
+    controller.sent(controller.limit(wanted, hand, {{0.1, 0.0, 0.0}, {}}, kControllerTick, 0.0, 100.0));
+    EXPECT_FALSE(controller.fires());
   }
-  EXPECT_NEAR(guard.energy(), 0.5, 1e-3);
+  EXPECT_NEAR(controller.energy(), 0.5, 1e-3);
 }
 
 TEST(HeldBody, NoMoreComesOutThanThereIs) {
   // A force that pushes the hand along, with nobody behind it.
   for (const double credit : {0.0, 0.2}) {
-    PassivityController guard;
-    guard.restart({});
+    PassivityController controller;
+    controller.restart({});
     const ArmImpedance arm{1.0, 0.5, 1.0};
     ArmState at;
     Wrench felt;
@@ -45,17 +45,18 @@ TEST(HeldBody, NoMoreComesOutThanThereIs) {
       out += glm::dot(felt.force, next.place - at.place);
       at = next;
       const Wrench wanted{{2.0 * std::sin(0.01 * i), 0.0, 0.0}, {}};
-      felt = guard.guard(wanted, {at.place, {1, 0, 0, 0}}, {at.velocity, {}}, kControllerTick, credit, 500.0);
-      guard.sent(felt);
+      felt = controller.limit(wanted, {at.place, {1, 0, 0, 0}}, {at.velocity, {}}, kControllerTick, credit,
+                              500.0);
+      controller.sent(felt);
       EXPECT_LE(out, credit + 1e-3) << i;
     }
-    EXPECT_NEAR(out, -guard.energy(), 0.01);
+    EXPECT_NEAR(out, -controller.energy(), 0.01);
   }
 }
 
 TEST(HeldBody, ATurningHandIsGuardedToo) {
-  PassivityController guard;
-  guard.restart({});
+  PassivityController controller;
+  controller.restart({});
   const ArmImpedance wrist{0.004, 0.002, 0.01};
   ArmState at;
   Wrench felt;
@@ -65,9 +66,9 @@ TEST(HeldBody, ATurningHandIsGuardedToo) {
     out += glm::dot(felt.torque, next.place - at.place);
     at = next;
     const Pose hand{glm::dvec3(0.0), rotate_by({1, 0, 0, 0}, at.place)};
-    felt = guard.guard({{}, {0.0, 0.05 * std::sin(0.02 * i), 0.0}}, hand, {{}, at.velocity}, kControllerTick,
-                       0.0, 500.0);
-    guard.sent(felt);
+    felt = controller.limit({{}, {0.0, 0.05 * std::sin(0.02 * i), 0.0}}, hand, {{}, at.velocity},
+                            kControllerTick, 0.0, 500.0);
+    controller.sent(felt);
     EXPECT_LE(out, 1e-3) << i;
   }
 }
@@ -76,31 +77,31 @@ TEST(HeldBody, ATurningHandIsGuardedToo) {
 /// the force comes back slowly, it paid for a twentieth of that, and was in debt for good (a spoon over 100
 /// ms, moved by 2 mm ten times a second: 25 mJ taken by the fluid each s, 1.2 paid).
 TEST(HeldBody, WhoHasNothingLeftFeelsWhatTheyDoAtOnce) {
-  PassivityController guard;
-  guard.restart({});
+  PassivityController controller;
+  controller.restart({});
   constexpr double kCredit = -0.05, kMax = 10.0, kSpeed = 0.2;  // J, N·s/m, m/s
   for (int i = 0; i < 100; ++i)
-    guard.sent(guard.guard({{-5.0, 0.0, 0.0}, {}}, {}, {}, kControllerTick, kCredit, kMax));
-  EXPECT_TRUE(guard.fires());
+    controller.sent(controller.limit({{-5.0, 0.0, 0.0}, {}}, {}, {}, kControllerTick, kCredit, kMax));
+  EXPECT_TRUE(controller.fires());
   Pose hand;
   double paid = 0.0;
   for (int i = 1; i <= 10; ++i) {
     hand.position.x += kSpeed * kControllerTick;
-    const Wrench felt =
-        guard.guard({{-5.0, 0.0, 0.0}, {}}, hand, {{kSpeed, 0.0, 0.0}, {}}, kControllerTick, kCredit, kMax);
+    const Wrench felt = controller.limit({{-5.0, 0.0, 0.0}, {}}, hand, {{kSpeed, 0.0, 0.0}, {}},
+                                         kControllerTick, kCredit, kMax);
     EXPECT_NEAR(felt.force.x, -kMax * kSpeed, 0.2) << i << ": as hard as the device may be damped";
     EXPECT_LE(std::abs(felt.force.x), 5.0);
-    guard.sent(felt);
+    controller.sent(felt);
     paid -= felt.force.x * kSpeed * kControllerTick;
   }
   EXPECT_NEAR(paid, 2.0 * 0.002, 5e-4);
   // A force that gives is none, whatever it is.
   const Wrench gives =
-      guard.guard({{5.0, 0.0, 0.0}, {}}, hand, {{kSpeed, 0.0, 0.0}, {}}, kControllerTick, kCredit, kMax);
+      controller.limit({{5.0, 0.0, 0.0}, {}}, hand, {{kSpeed, 0.0, 0.0}, {}}, kControllerTick, kCredit, kMax);
   EXPECT_LE(gives.force.x, 0.0);
   // No damper takes more than the force it stands for.
   const Wrench little =
-      guard.guard({{-0.1, 0.0, 0.0}, {}}, hand, {{kSpeed, 0.0, 0.0}, {}}, kControllerTick, 1.0, kMax);
+      controller.limit({{-0.1, 0.0, 0.0}, {}}, hand, {{kSpeed, 0.0, 0.0}, {}}, kControllerTick, 1.0, kMax);
   EXPECT_NEAR(little.force.x, -0.1, 0.01);
 }
 
@@ -108,8 +109,8 @@ TEST(HeldBody, WhoHasNothingLeftFeelsWhatTheyDoAtOnce) {
 /// counted.
 TEST(HeldBody, AHandAtRestIsNotPushedOff) {
   for (const double mass : {0.3, 1.0, 3.0}) {
-    PassivityController guard;
-    guard.restart({});
+    PassivityController controller;
+    controller.restart({});
     const ArmImpedance arm{mass, 0.5, 1.0};
     ArmState at;
     Wrench felt;
@@ -118,9 +119,9 @@ TEST(HeldBody, AHandAtRestIsNotPushedOff) {
       const ArmState next = arm_after(arm, at, felt.force, kControllerTick);
       out += glm::dot(felt.force, next.place - at.place);
       at = next;
-      felt = guard.guard({{10.0, 0.0, 0.0}, {}}, {at.place, {1, 0, 0, 0}}, {at.velocity, {}}, kControllerTick,
-                         0.0, 100.0);
-      guard.sent(felt);
+      felt = controller.limit({{10.0, 0.0, 0.0}, {}}, {at.place, {1, 0, 0, 0}}, {at.velocity, {}},
+                              kControllerTick, 0.0, 100.0);
+      controller.sent(felt);
       most = std::max(most, out);
     }
     EXPECT_LE(most, 1e-3) << mass;
@@ -131,8 +132,8 @@ TEST(HeldBody, AHandAtRestIsNotPushedOff) {
 /// packets' rate: it finds what the balance carries, and comes back slowly where there is more; now and then
 /// it has to find it again.
 TEST(HeldBody, WhereTheBalanceIsOutTheForceDoesNotRattle) {
-  PassivityController guard;
-  guard.restart({});
+  PassivityController controller;
+  controller.restart({});
   const ArmImpedance arm{1.0, 30.0, 1.0};
   ArmState at;
   Wrench felt;
@@ -144,9 +145,9 @@ TEST(HeldBody, WhereTheBalanceIsOutTheForceDoesNotRattle) {
     const ArmState next = arm_after(arm, at, felt.force, kControllerTick);
     out += glm::dot(felt.force, next.place - at.place);
     at = next;
-    felt = guard.guard({{10.0, 0.0, 0.0}, {}}, {at.place, {1, 0, 0, 0}}, {at.velocity, {}}, kControllerTick,
-                       credit, 100.0);
-    guard.sent(felt);
+    felt = controller.limit({{10.0, 0.0, 0.0}, {}}, {at.place, {1, 0, 0, 0}}, {at.velocity, {}},
+                            kControllerTick, credit, 100.0);
+    controller.sent(felt);
     EXPECT_LE(out, credit + 1e-3) << i;
     if (i % 2 != 0) continue;
     const double step = glm::length(felt.force - row);
@@ -170,8 +171,8 @@ TEST(HeldBody, WhereTheBalanceIsOutTheForceDoesNotRattle) {
 TEST(HeldBody, BeforeTheBalanceIsOutTheForceGoesGently) {
   for (const double drained : {0.0, 0.3, 1.0}) {   // W
     for (const double speed : {0.03, 0.1, 0.3}) {  // m/s
-      PassivityController guard;
-      guard.restart({});
+      PassivityController controller;
+      controller.restart({});
       constexpr double kHeld = 15.0;  // N
       const ArmImpedance arm{1.5, 30.0, 800.0};
       ArmState at;
@@ -188,9 +189,9 @@ TEST(HeldBody, BeforeTheBalanceIsOutTheForceGoesGently) {
         at = next;
         credit -= drained * kControllerTick;
         const double before = felt.force.x;
-        felt = guard.guard({{kHeld, 0.0, 0.0}, {}}, hand, {{at.velocity.x + goes, 0.0, 0.0}, {}},
-                           kControllerTick, credit, 100.0);
-        guard.sent(felt);
+        felt = controller.limit({{kHeld, 0.0, 0.0}, {}}, hand, {{at.velocity.x + goes, 0.0, 0.0}, {}},
+                                kControllerTick, credit, 100.0);
+        controller.sent(felt);
         step = std::max(step, std::abs(felt.force.x - before));
         least = std::min(least, felt.force.x);
         if (drained <= 0.0) {

@@ -144,7 +144,7 @@ TEST(LoadWork, IsWhatActsBesidesGave) {
       word.motion = {host.position, host.orientation, {host.velocity, host.angular_velocity}};
       word.hands = said;
       if (i == 0) truth = 0.0;
-      work.hear(word);
+      work.receive(word);
       most = std::max(most, std::abs(truth));
       more = std::max(more, work.work() - truth);
       less = std::max(less, truth - work.work());
@@ -158,26 +158,26 @@ TEST(LoadWork, IsWhatActsBesidesGave) {
 
 /// A load that is not trusted gives nothing: what it drove is taken out of the motion.
 TEST(Replica, ALoadThatIsNotBelievedDrivesNothing) {
-  for (const double believed : {1.0, 0.0}) {
+  for (const double trust : {1.0, 0.0}) {
     BodyReplica replica(replica_bucket(), replica_grips());
     replica.restart({});
-    replica.believe_load(believed);
+    replica.trust_load(trust);
     FluidLoad push;
     push.wrench = {5.0, 0.0, 0.0, 0.0, 0.0, 0.0};
     replica.set_load(push);
     const std::vector<ReplicaHand> nobody(2);
     for (int i = 0; i < 500; ++i) replica.advance(nobody, kTick, to_nanoseconds(kTick * (i + 1)));
     const double speed = replica.motion().twist.linear.x;
-    if (believed == 1.0) {
+    if (trust == 1.0) {
       EXPECT_NEAR(speed, 1.0, 0.01);
       EXPECT_NEAR(replica.work(), replica.stored(), 0.01);
     } else {
       EXPECT_LT(speed, 0.1);
     }
     // The host's own count is trusted in any case.
-    replica.hear({replica.motion(), to_nanoseconds(0.4), 0.7});
+    replica.receive({replica.motion(), to_nanoseconds(0.4), 0.7});
     replica.advance(nobody, kTick, to_nanoseconds(0.501));
-    EXPECT_EQ(replica.work_heard(), 0.7);
+    EXPECT_EQ(replica.work_received(), 0.7);
   }
 }
 
@@ -191,7 +191,7 @@ TEST(Replica, TakesTheHostsWordOverByItsTimeConstant) {
   word.position = {0.01, 0.0, 0.0};
   word.orientation = rotate_by(word.orientation, {0.0, 0.02, 0.0});
   for (int i = 100; i < 300; ++i) {
-    replica.hear({word, 1'000'000 * (i - 50)});
+    replica.receive({word, 1'000'000 * (i - 50)});
     replica.advance({}, kTick, 1'000'000 * (i + 1));
   }
   // A time constant later 63 % is made good: the history moved along, so nothing was made good twice.
@@ -209,12 +209,12 @@ TEST(Replica, AWordOfAMomentThatIsStillToComeWaitsForIt) {
     replica.advance({}, kTick, 1'000'000 * (i + 1));
     RigidMotion word = moving;  // just where the replica is going to be 2 ms from now
     word.position.x = kTick * (i + 3);
-    replica.hear({word, 1'000'000 * (i + 3)});
+    replica.receive({word, 1'000'000 * (i + 3)});
   }
   EXPECT_NEAR(replica.motion().position.x, 0.1, 1e-9);
 }
 
-TEST(Replica, OthersPullLessTheLaterTheyAreHeard) {
+TEST(Replica, OthersPullLessTheLaterTheyArrive) {
   BodyReplica replica(replica_bucket(), replica_grips());
   replica.restart({});
   std::vector<ReplicaHand> hands{hand_at(0.0, 0), hand_at(0.0, 1)};

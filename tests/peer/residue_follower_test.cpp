@@ -21,7 +21,7 @@ double off_by(const std::function<double(double)>& force, double delay, double f
   ResidueFollower follower;
   double all = 0.0, count = 0.0;
   for (double t = 0.0; t < to; t += kWord) {
-    follower.hear(kWord, force(t - delay), delay, kMax);
+    follower.update(kWord, force(t - delay), delay, kMax);
     if (t < from) continue;
     all += std::pow(follower.foreseen() - force(t), 2.0);
     count += 1.0;
@@ -71,14 +71,14 @@ TEST(ResidueFollower, SaysNothingThatIsNoNumberAndNothingFarBeyondWhatWasTold) {
     const double told = (i / 300) % 2 ? 40.0 : static_cast<double>(random >> 16) / 65536.0 * 10.0;
     low = std::min(low, told);
     high = std::max(high, told);
-    follower.hear(kWord, told, 0.4, kMax);
+    follower.update(kWord, told, 0.4, kMax);
     ASSERT_GE(follower.foreseen(), low - kMax - 1e-9);
     ASSERT_LE(follower.foreseen(), high + kMax + 1e-9);
   }
-  follower.hear(kWord, std::numeric_limits<double>::quiet_NaN(), 0.4, kMax);
+  follower.update(kWord, std::numeric_limits<double>::quiet_NaN(), 0.4, kMax);
   EXPECT_FALSE(follower.known());
   EXPECT_EQ(follower.foreseen(), 0.0);
-  follower.hear(kWord, 5.0, 0.4, kMax);
+  follower.update(kWord, 5.0, 0.4, kMax);
   EXPECT_NEAR(follower.foreseen(), 5.0, 1e-9);
 }
 

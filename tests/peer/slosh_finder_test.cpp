@@ -23,7 +23,7 @@ SloshFinder led_finder(double seconds, const std::function<double(double, double
   for (double t = 0.0; t < seconds; t += kStep) {
     const double angle = 2.0 * std::numbers::pi * t;
     const double now = 0.15 * std::min(t, 1.0) * (std::sin(0.9 * angle) + std::sin(1.9 * angle));
-    finder.hear(kStep, before, now, force(now, (now - before) / kStep, t));
+    finder.add_sample(kStep, before, now, force(now, (now - before) / kStep, t));
     before = now;
   }
   return finder;
@@ -100,7 +100,7 @@ TEST(SloshFinder, KnowsAMassOnASpringByTheBeginOfOnePace) {
   };
   for (double t = kStep; t < 1.5; t += kStep) {
     const double v = at(t), middle = 0.5 * (v + last);
-    found.hear(kStep, last, v, -4.0 * middle + fluid.force(last, v));
+    found.add_sample(kStep, last, v, -4.0 * middle + fluid.force(last, v));
     last = v;
   }
   expect_followed(found, truth);
@@ -119,7 +119,7 @@ TEST(SloshFinder, KnowsAMassOnASpringAfterALongRest) {
   for (double t = kStep; t < 40.0; t += kStep) {
     const double v =
         t < 15.0 ? 0.0 : 0.15 * std::min(t - 15.0, 1.0) * (std::sin(5.65 * t) + std::sin(11.9 * t));
-    found.hear(kStep, last, v, -2.0 * (v + last) + fluid.force(last, v));
+    found.add_sample(kStep, last, v, -2.0 * (v + last) + fluid.force(last, v));
     last = v;
     if (t < 17.0) continue;
     ASSERT_NEAR(found.mode().mass, 1.5, 0.15) << t;
@@ -162,7 +162,7 @@ TEST(SloshFinder, WhatIsPouredOutNeedNotBeFoundAgain) {
       const double now = 0.15 * std::min(t, 1.0) * (std::sin(0.9 * angle) + std::sin(1.9 * angle));
       const double swings = fluid.force(before, now);
       if (said && t >= 4.0 && t < 4.0 + kStep) finder.lighten(0.5);
-      finder.hear(kStep, before, now, left * (kFinderWeight - 0.8 * (now - before) / kStep + swings));
+      finder.add_sample(kStep, before, now, left * (kFinderWeight - 0.8 * (now - before) / kStep + swings));
       before = now;
       if (t > 4.1) off = std::max(off, std::abs(finder.mode().mass - 0.75));
     }

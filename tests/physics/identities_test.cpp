@@ -76,7 +76,7 @@ TEST_P(Corrected, momentum_of_fluid_and_free_body_together) {
   const double dt = e.world().plan().time_step, box_mass = b.scene.bodies[box].mass.mass;
   const auto momentum = [&] {
     const Diagnostics fluid = e.world().diagnostics();
-    return fluid.momentum + fluid.guarded_impulse + box_mass * e.bodies().bodies[box].twist.linear;
+    return fluid.momentum + fluid.clamp_impulse + box_mass * e.bodies().bodies[box].twist.linear;
   };
   const double mass = e.fluid_mass() + box_mass;
   double worst = 0.0;
@@ -307,7 +307,7 @@ INSTANTIATE_TEST_SUITE_P(
 
 // A closed vessel in free space whose fluid is thrown at its walls, far too fast for its stiffness: what
 // walls take from particles that would pass them, the vessel gets, to the rounding of the particles' floats.
-TEST(GuardedWalls, give_their_body_what_they_take_from_particles) {
+TEST(ClampedWalls, give_their_body_what_they_take_from_particles) {
   SceneBuilder b;
   b.add_fluid(1000.0, 0.01);
   constexpr double kHalf = 0.05, kWall = 0.015;
@@ -340,7 +340,7 @@ TEST(GuardedWalls, give_their_body_what_they_take_from_particles) {
     e.step();
     if (saved) {
       twin.step();
-    } else if (e.world().diagnostics().guarded_impulse.x > 0.0) {
+    } else if (e.world().diagnostics().clamp_impulse.x > 0.0) {
       std::vector<std::uint8_t> bytes;
       ASSERT_TRUE(e.world().save(bytes));
       ASSERT_TRUE(twin.world().restore(bytes));
@@ -350,18 +350,18 @@ TEST(GuardedWalls, give_their_body_what_they_take_from_particles) {
     linear = std::max(linear, glm::length(now.linear - start.linear) / glm::length(start.linear));
     angular = std::max(angular, glm::length(now.angular - start.angular) / glm::length(start.angular));
   }
-  const double guarded = static_cast<double>(e.world().diagnostics().guarded);
-  report_value("thrown vessel, particles put back", guarded, "");
+  const double clamped = static_cast<double>(e.world().diagnostics().clamped);
+  report_value("thrown vessel, particles put back", clamped, "");
   report_value("thrown vessel, momentum lost in 400 steps", linear, "");
   report_value("thrown vessel, angular momentum lost in 400 steps", angular, "");
-  EXPECT_GT(guarded, 40.0) << "the test tests little";
+  EXPECT_GT(clamped, 40.0) << "the test tests little";
   EXPECT_GT(e.bodies().bodies[vessel].twist.linear.x, 0.2);
   EXPECT_EQ(cost.status & kStatusSpeedLimited, 0u);
   EXPECT_LT(linear, 1e-5);
   EXPECT_LT(angular, 1e-5);
   ASSERT_TRUE(saved);
   EXPECT_EQ(twin.world().hash(), e.world().hash());
-  EXPECT_EQ(twin.world().diagnostics().guarded, e.world().diagnostics().guarded);
+  EXPECT_EQ(twin.world().diagnostics().clamped, e.world().diagnostics().clamped);
 }
 
 }  // namespace

@@ -236,7 +236,7 @@ TEST(JoinedWalls, WhatAnotherHidesIsNotExposed) {
   EXPECT_EQ(exposed_samples(alone, kSpacing)[0].size(), alone[0].surface->positions.size());
 }
 
-// What the guard reads between two that touch is as deep as in one piece; where fluid is, and within open
+// What the clamp reads between two that touch is as deep as in one piece; where fluid is, and within open
 // faces, it reads what it did.
 TEST(JoinedWalls, AJointIsAsDeepAsOnePiece) {
   for (const float cell : {0.5f, 0.76f}) {

@@ -205,7 +205,7 @@ TEST(Extremes, fluid_thrown_at_a_wall) {
                  100.0 * share, "%");
     if (stiffness == kOfTheDepth) {
       EXPECT_NE(status & kStatusCompressed, 0u) << status_text(status);
-      EXPECT_EQ(status & kStatusGuarded, 0u) << status_text(status);
+      EXPECT_EQ(status & kStatusClamped, 0u) << status_text(status);
     } else {
       EXPECT_EQ(status & kStatusCompressed, 0u) << status_text(status);
     }

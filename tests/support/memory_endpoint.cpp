@@ -20,7 +20,7 @@ struct Way {
   std::deque<SharedBytes> queues[kPriorities];
   ConnectionStats stats;
   std::int64_t free_at_ns = 0;   // when the rate lets the next datagram go
-  std::int64_t heard_ns = 0;     // when the sending end last heard from the other
+  std::int64_t received_ns = 0;  // when the sending end last heard from the other
   std::int64_t next_stream = 0;  // counts both kinds
 };
 
@@ -193,7 +193,7 @@ class MemoryEndpoint final : public Endpoint {
     Way& way = connection->ways[direction];
     way.id = id;
     way.from = this;
-    way.heard_ns = network_->now();
+    way.received_ns = network_->now();
     return id;
   }
   void add(std::int64_t due_ns, std::function<void(EndpointEvents&)> deliver) {
@@ -206,8 +206,8 @@ class MemoryEndpoint final : public Endpoint {
     for (auto& [id, entry] : mine_) {
       Connection& c = *entry.connection;
       Way& way = c.ways[entry.direction];
-      if (!c.dark) way.heard_ns = now;  // keep-alives pass
-      if (c.open && now - way.heard_ns > to_nanoseconds(options_.idle_timeout)) {
+      if (!c.dark) way.received_ns = now;  // keep-alives pass
+      if (c.open && now - way.received_ns > to_nanoseconds(options_.idle_timeout)) {
         c.open = false;
         for (Way& each : c.ways) {
           if (!each.from) continue;

@@ -61,7 +61,7 @@ class HeadsetTest : public ::testing::Test {
   /// One turn as the program takes it; true when both eyes were drawn and handed over.
   bool turn() {
     state_ = headset_->poll();
-    hear();
+    note_problem();
     if (state_ == HeadsetState::kAway || state_ == HeadsetState::kLost || state_ == HeadsetState::kEnded) {
       std::this_thread::sleep_for(std::chrono::milliseconds(1));
       return false;
@@ -79,11 +79,11 @@ class HeadsetTest : public ::testing::Test {
           for (std::size_t eye = 0; eye < 2; ++eye) renderer_->draw(p.views[eye], p.targets[eye]);
           if (p.panel.texture != 0) renderer_->draw_panel(p.panel_size, p.panel);
         });
-    hear();
+    note_problem();
     drawn_ += drawn;
     return drawn;
   }
-  void hear() {
+  void note_problem() {
     if (const std::string said = headset_->take_problem(); !said.empty()) said_ += said + "\n";
   }
   /// Until `drawn` more frames were, or it was tried a thousand times.

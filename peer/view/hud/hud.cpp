@@ -120,7 +120,7 @@ std::uint32_t Hud::status() const {
     if (status_until_[bit] >= time_) status |= 1u << bit;
   }
   // The clamp at walls acts in most steps of a sound run: alone it asks for nothing (peer/view/README.md).
-  if (!(status & kStatusCompressed)) status &= ~static_cast<std::uint32_t>(kStatusGuarded);
+  if (!(status & kStatusCompressed)) status &= ~static_cast<std::uint32_t>(kStatusClamped);
   // Spilling is what many scenes are for, and stands in a row of its own.
   if (facts_.walls_hold) status &= ~static_cast<std::uint32_t>(kStatusEscaped);
   return status;

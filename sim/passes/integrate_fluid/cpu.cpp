@@ -7,7 +7,7 @@
 #include "sim/cpu/state.h"
 #include "sim/passes/integrate_fluid/leap_frog.h"
 #include "sim/snapshot.h"
-#include "sim/walls/wall_guard.h"
+#include "sim/walls/penetration_clamp.h"
 
 namespace slosh {
 
@@ -16,34 +16,34 @@ constexpr std::size_t kParticlesPerChunk = 2048;
 
 // Several walls may bend a way one after the other; the integers add up to the same whoever comes first.
 // True when it would have been past the wall's own particles, which sit twice as deep as it may get.
-bool guard(const WallGuards& guards, const ImpulseUnits& units, float mass, bool near, const glm::vec3& from,
-           glm::vec3& x, glm::vec3& v) {
+bool keep_from_walls(const WallClamps& clamps, const ImpulseUnits& units, float mass, bool near,
+                     const glm::vec3& from, glm::vec3& x, glm::vec3& v) {
   const auto add = [&](std::size_t word, std::int64_t value) {
-    std::atomic_ref(guards.impulses[word]).fetch_add(value, std::memory_order_relaxed);
+    std::atomic_ref(clamps.impulses[word]).fetch_add(value, std::memory_order_relaxed);
   };
   bool past = false;
   const bool bent =
-      guard_against_all([&](std::uint32_t b) -> const GuardedBody& { return guards.bodies[b]; },
-                        static_cast<std::uint32_t>(guards.bodies.size()), near, from, x, v,
+      clamp_against_all([&](std::uint32_t b) -> const ClampBody& { return clamps.bodies[b]; },
+                        static_cast<std::uint32_t>(clamps.bodies.size()), near, from, x, v,
                         [&](std::uint32_t b, const glm::vec3& to, const glm::vec3& before) {
-                          past |= glm::distance(to, x) > guards.bodies[b].depth;
-                          impulse_on_body({mass, to, x, before, v}, guards.centers[b], units,
+                          past |= glm::distance(to, x) > clamps.bodies[b].depth;
+                          impulse_on_body({mass, to, x, before, v}, clamps.centers[b], units,
                                           [&](int word, std::int64_t value) {
                                             add(kImpulseWords * b + static_cast<std::size_t>(word), value);
                                           });
                         });
-  if (bent) add(guards.impulses.size() - 1, 1);
+  if (bent) add(clamps.impulses.size() - 1, 1);
   return past;
 }
 }  // namespace
 
-void integrate_fluid(PassContext& context, ThreadTeam& team, FluidParticles& fluid, const WallGuards& guards,
+void integrate_fluid(PassContext& context, ThreadTeam& team, FluidParticles& fluid, const WallClamps& clamps,
                      double time_step) {
   const float dt = static_cast<float>(time_step);
   const float max_speed = static_cast<float>(speed_limit(context.plan, time_step));
-  const bool any_fast = std::any_of(guards.bodies.begin(), guards.bodies.end(),
-                                    [](const GuardedBody& body) { return body.fast; });
-  const bool guarded = !guards.bodies.empty();
+  const bool any_fast = std::any_of(clamps.bodies.begin(), clamps.bodies.end(),
+                                    [](const ClampBody& body) { return body.fast; });
+  const bool clamped = !clamps.bodies.empty();
   team.run(fluid.active, kParticlesPerChunk, [&](std::size_t begin, std::size_t end) {
     std::uint32_t status = 0;
     for (std::size_t p = begin; p < end; ++p) {
@@ -57,9 +57,9 @@ void integrate_fluid(PassContext& context, ThreadTeam& team, FluidParticles& flu
                            x, v)) {
         status |= kStatusSpeedLimited;
       }
-      if (guarded && (any_fast || fluid.near_wall[p]) && context.grid.contains(x.x, x.y, x.z) &&
-          guard(guards, context.impulse_units, kind.mass, fluid.near_wall[p], from, x, v)) {
-        status |= kStatusGuarded;
+      if (clamped && (any_fast || fluid.near_wall[p]) && context.grid.contains(x.x, x.y, x.z) &&
+          keep_from_walls(clamps, context.impulse_units, kind.mass, fluid.near_wall[p], from, x, v)) {
+        status |= kStatusClamped;
       }
       fluid.vx[p] = v.x;
       fluid.vy[p] = v.y;
@@ -84,11 +84,12 @@ void integrate_fluid(PassContext& context, ThreadTeam& team, FluidParticles& flu
 namespace passes {
 
 void integrate_fluid_on_cpu(CpuState& s, const PassInputs& in) {
-  std::vector<GuardedBody>& guarded = s.memory<std::vector<GuardedBody>>(PassId::kIntegrateFluid);
+  std::vector<ClampBody>& clamped = s.memory<std::vector<ClampBody>>(PassId::kIntegrateFluid);
   s.centers.clear();
   for (const RigidBody& body : in.after) s.centers.push_back(body.position);
-  if (s.context.plan.guards_walls()) guard_bodies(s.views, s.context.plan, s.bodies, in.after, guarded);
-  integrate_fluid(s.context, s.team, s.fluid, {guarded, s.centers, s.impulses}, in.dt);
+  if (s.context.plan.clamps_penetration())
+    place_clamp_bodies(s.views, s.context.plan, s.bodies, in.after, clamped);
+  integrate_fluid(s.context, s.team, s.fluid, {clamped, s.centers, s.impulses}, in.dt);
 }
 
 }  // namespace passes

@@ -9,26 +9,27 @@ namespace {
 
 // Integers, so that the sums do not depend on who comes first. True as on the CPU: when it would have been
 // past the wall's own particles.
-__device__ bool keep_from_walls(const GuardView& guard, float mass, bool near, const glm::vec3& from,
+__device__ bool keep_from_walls(const ClampView& clamps, float mass, bool near, const glm::vec3& from,
                                 glm::vec3& x, glm::vec3& v) {
-  const auto body = [&](std::uint32_t b) -> const GuardedBody& { return guard.bodies[b].body; };
+  const auto body = [&](std::uint32_t b) -> const ClampBody& { return clamps.bodies[b].body; };
   bool past = false;
-  const bool bent = guard_against_all(body, guard.count, near, from, x, v,
-                                      [&](std::uint32_t b, const glm::vec3& to, const glm::vec3& before) {
-                                        past |= glm::distance(to, x) > body(b).depth;
-                                        impulse_on_body({mass, to, x, before, v}, guard.bodies[b].center,
-                                                        guard.units, [&](int word, std::int64_t value) {
-                                                          atomicAdd(guard.impulses + kImpulseWords * b + word,
-                                                                    static_cast<unsigned long long>(value));
-                                                        });
-                                      });
-  if (bent) atomicAdd(guard.impulses + kImpulseWords * guard.count, 1ull);
+  const bool bent =
+      clamp_against_all(body, clamps.count, near, from, x, v,
+                        [&](std::uint32_t b, const glm::vec3& to, const glm::vec3& before) {
+                          past |= glm::distance(to, x) > body(b).depth;
+                          impulse_on_body({mass, to, x, before, v}, clamps.bodies[b].center, clamps.units,
+                                          [&](int word, std::int64_t value) {
+                                            atomicAdd(clamps.impulses + kImpulseWords * b + word,
+                                                      static_cast<unsigned long long>(value));
+                                          });
+                        });
+  if (bent) atomicAdd(clamps.impulses + kImpulseWords * clamps.count, 1ull);
   return past;
 }
 
 __global__ __launch_bounds__(kThreads) void integrate_kernel(StepConstants c, const ParticleKind* kinds,
                                                              SortedFluid fluid, float dt, float max_speed,
-                                                             GuardView guard, ProbeOutput probes,
+                                                             ClampView clamps, ProbeOutput probes,
                                                              std::uint32_t* out_status) {
   const std::uint32_t p = thread_index();
   if (p >= fluid.count) return;
@@ -51,9 +52,9 @@ __global__ __launch_bounds__(kThreads) void integrate_kernel(StepConstants c, co
     status |= kStatusSpeedLimited;
   }
   const bool near = force.w != 0.0f;
-  if (guard.count && (near || guard.any_fast) && c.grid.contains(x.x, x.y, x.z) &&
-      keep_from_walls(guard, kind.mass, near, {x4.x, x4.y, x4.z}, x, v)) {
-    status |= kStatusGuarded;
+  if (clamps.count && (near || clamps.any_fast) && c.grid.contains(x.x, x.y, x.z) &&
+      keep_from_walls(clamps, kind.mass, near, {x4.x, x4.y, x4.z}, x, v)) {
+    status |= kStatusClamped;
   }
   std::uint32_t key = retired;
   if (c.grid.contains(x.x, x.y, x.z)) {
@@ -82,10 +83,10 @@ void launch_hand_over(std::int64_t* impulses, std::int64_t* out, std::size_t wor
 }
 
 void launch_integrate(const StepConstants& constants, const ParticleKind* kinds, const SortedFluid& fluid,
-                      float dt, float max_speed, const GuardView& guard, const ProbeOutput& probes,
+                      float dt, float max_speed, const ClampView& clamps, const ProbeOutput& probes,
                       std::uint32_t* status, cudaStream_t stream) {
   integrate_kernel<<<blocks_for(fluid.count), kThreads, 0, stream>>>(constants, kinds, fluid, dt, max_speed,
-                                                                     guard, probes, status);
+                                                                     clamps, probes, status);
 }
 
 }  // namespace slosh::cuda

@@ -3,13 +3,13 @@
 namespace slosh::passes {
 
 void integrate_fluid_on_cuda(cuda::CudaState& s, const PassInputs& in) {
-  s.guards.send(s.constants.plan, s.prepared, in.after, s.check, s.stream);
+  s.clamps.send(s.constants.plan, s.prepared, in.after, s.check, s.stream);
   if (!s.check.failed()) {
     const cuda::ProbeOutput probes{static_cast<std::uint32_t>(s.fluid_count), s.report.probes(),
                                    s.sent_probes.slots().data()};
     launch_integrate(s.step, s.kinds.data(), s.fluid.sorted(), static_cast<float>(in.dt),
                      static_cast<float>(speed_limit(s.constants.plan, in.dt)),
-                     s.guards.view(s.constants.impulse_units), probes, s.report.status(), s.stream);
+                     s.clamps.view(s.constants.impulse_units), probes, s.report.status(), s.stream);
     s.check.launched("integration");
   }
   // A probe's place changes before the next sort.

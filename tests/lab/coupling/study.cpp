@@ -147,7 +147,7 @@ struct StudySite {
   Pose before;
   double put_in = 0.0;  // J, as it is, not as the site counts it
   double next_send = 0.0;
-  double heard = 0.0;  // s, when the newest state came
+  double received = 0.0;  // s, when the newest state came
   bool has_state = false;
   std::uint64_t fired = 0;
 };
@@ -264,7 +264,7 @@ class Study {
   void turn(StudySite& site, std::size_t g) {
     const bool fresh = site.down.receive(now_, site.state);
     if (fresh) {
-      site.heard = now_;
+      site.received = now_;
       site.has_state = true;
     }
     Wrench felt;
@@ -288,7 +288,7 @@ class Study {
 
   Wrench by_host(const StudySite& site, std::size_t g) const {
     if (scheme_ == Scheme::kHostForce) return site.state.on_hand[g];
-    const double on = perfect_ ? 0.0 : std::min(now_ - site.heard, 2.0 * time_step_);
+    const double on = perfect_ ? 0.0 : std::min(now_ - site.received, 2.0 * time_step_);
     const RigidMotion& body = site.state.motion;
     const Pose pose = extrapolate({body.position, body.orientation}, body.twist, on);
     const Pose grip = compose(pose, host_.grips()[g]);
@@ -309,9 +309,9 @@ class Study {
     if (own.engaged) {
       const Wrench wanted =
           coupling_wrench_on_hand(host_.gains(), own.handle, own.twist, grip.pose, grip.twist);
-      felt = held.guard(g, wanted, own.handle, own.twist, kPeriod, c_.most_damping);
+      felt = held.limit(g, wanted, own.handle, own.twist, kPeriod, c_.most_damping);
     } else {
-      (void)held.guard(g, Wrench{}, own.handle, Twist{}, kPeriod, c_.most_damping);
+      (void)held.limit(g, Wrench{}, own.handle, Twist{}, kPeriod, c_.most_damping);
     }
     held.sent(g, felt);
     site.hand.energy = held.energy(g);
@@ -329,8 +329,8 @@ class Study {
       if (j == g && hand.stamp >= 0.0) said_[j].ack_ns = to_nanoseconds(hand.stamp + time_step_) + 1;
     }
     if (site.state.has_load) site.held->set_fluid(site.state.load);
-    site.held->hear({to_nanoseconds(now_) + 1, site.state.stamp, time_step_, site.state.motion, said_, 1.0,
-                     true, site.state.fluid});
+    site.held->receive({to_nanoseconds(now_) + 1, site.state.stamp, time_step_, site.state.motion, said_, 1.0,
+                        true, site.state.fluid});
   }
 
   Verdict verdict() {

@@ -112,7 +112,7 @@ class Site {
       : gains_(run.grip.gains), held_(run.body, {run.grip}, tuning) {
     own_[0].here = true;
   }
-  void hear(const WaterStep& step, double now) {
+  void receive(const WaterStep& step, double now) {
     if (step.has_model) {
       FluidLoad load;
       load.d_pose = step.model.d_pose;
@@ -124,14 +124,14 @@ class Site {
     }
     const HostHand said{true, step.handle, step.on_hand, to_nanoseconds(step.time + kWaterPeriod) + 1,
                         true, 0.0};
-    held_.hear({to_nanoseconds(now) + 1,
-                step.time + kWaterPeriod,
-                kWaterPeriod,
-                step.motion,
-                {&said, 1},
-                1.0,
-                true,
-                step.fluid});
+    held_.receive({to_nanoseconds(now) + 1,
+                   step.time + kWaterPeriod,
+                   kWaterPeriod,
+                   step.motion,
+                   {&said, 1},
+                   1.0,
+                   true,
+                   step.fluid});
   }
   Wrench tick(const DeviceReport& hand, double now) {
     own_[0].engaged = true;
@@ -140,7 +140,7 @@ class Site {
     Wrench felt;
     if (held_.started()) {
       const GripState grip = held_.grip(0);
-      felt = held_.guard(0, coupling_wrench_on_hand(gains_, hand.pose, hand.twist, grip.pose, grip.twist),
+      felt = held_.limit(0, coupling_wrench_on_hand(gains_, hand.pose, hand.twist, grip.pose, grip.twist),
                          hand.pose, hand.twist, kWaterPeriod, kMaxDamping);
     }
     held_.sent(0, felt);
@@ -250,7 +250,7 @@ Result<std::vector<Wrench>> feel_water(const WaterRun& reference, double round_t
   if (reference.c.grip.empty()) {
     for (std::size_t i = 0; i < felt.size(); ++i) {
       const double now = kWaterPeriod * static_cast<double>(i);
-      if (i >= 2 * way) site.hear(reference.steps[i - 2 * way], now);
+      if (i >= 2 * way) site.receive(reference.steps[i - 2 * way], now);
       DeviceReport hand;
       hand.pose = reference.steps[i].hand;
       hand.twist = reference.steps[i].hand_twist;
@@ -275,7 +275,7 @@ Result<std::vector<Wrench>> feel_water(const WaterRun& reference, double round_t
       steps[i].time = kWaterPeriod * static_cast<double>(i - way);
       host.step(hands[i - way], steps[i]);
     }
-    if (i >= 2 * way) site.hear(steps[i - way], now);
+    if (i >= 2 * way) site.receive(steps[i - way], now);
     felt[i] = site.held().started() ? site.tick(hands[i], now) : reference.steps[i].felt;
     hand.value()->write(felt[i]);
   }

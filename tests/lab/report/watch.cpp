@@ -24,7 +24,7 @@ void Watch::run(double seconds, const std::function<void()>& each) {
       for (const BodyState& body : trial_.bodies().bodies) on_bodies += body.fluid.force;
       // What walls took in this step, bodies get in the next; what they got in this, they took in the last.
       const glm::dvec3 given =
-          dt * (before.mass * gravity_ - on_bodies) + before.guarded_impulse - after.guarded_impulse;
+          dt * (before.mass * gravity_ - on_bodies) + before.clamp_impulse - after.clamp_impulse;
       // Rounding of float velocities counts against what moves as well as against the weight.
       const double scale = dt * before.mass * g + 1e-3 * glm::length(before.momentum);
       worst_momentum_ =

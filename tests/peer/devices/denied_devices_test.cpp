@@ -15,15 +15,14 @@
 #include "tests/peer/devices/mocked_gamepad.h"
 #include "tests/peer/devices/mocked_spacemouse.h"
 #include "tests/peer/devices/own_folder.h"
+#include "tests/support/contains.h"
 #include "tests/support/process.h"
 #include "tests/support/terminal.h"
 
 namespace slosh {
 namespace {
 
-bool contains(const std::string& text, const std::string& words) {
-  return text.find(words) != std::string::npos;
-}
+using test::contains;
 
 class DeniedDevices : public ::testing::Test {
  protected:

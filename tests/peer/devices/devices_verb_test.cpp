@@ -43,7 +43,7 @@ TEST(DevicesVerb, ShowsLiveValues) {
   MockedMachine machine;
   MockedSpaceMouse mouse(machine, 0, k3DconnexionVendor, 0xc635, "ABC");
   test::Process process({SLOSH_PROGRAM, "devices", "--live"}, folder.path());
-  EXPECT_EQ(mouse.hear(2), (std::vector<std::uint8_t>{4, 1}));  // it is open
+  EXPECT_EQ(mouse.receive(2), (std::vector<std::uint8_t>{4, 1}));  // it is open
   mouse.say({1, 0x64, 0, 0, 0, 0, 0});
   EXPECT_TRUE(test::comes([&] {
     return test::read_text(folder.path() / "stdout.txt").find("1 reports") != std::string::npos ||
@@ -53,7 +53,7 @@ TEST(DevicesVerb, ShowsLiveValues) {
   const test::Outcome outcome = process.wait();
   EXPECT_EQ(outcome.code, 130) << outcome.err;
   EXPECT_NE(outcome.out.find("spacemouse:ABC: at"), std::string::npos) << outcome.out;
-  EXPECT_EQ(mouse.hear(2), (std::vector<std::uint8_t>{4, 0})) << "and it is let go of in order";
+  EXPECT_EQ(mouse.receive(2), (std::vector<std::uint8_t>{4, 0})) << "and it is let go of in order";
 }
 
 TEST(DevicesVerb, TheRuleHasEveryVendorAndGoesWhereItIsTold) {

@@ -224,25 +224,25 @@ TEST_F(Falcon, ThreeThousandReportsAtAKilohertzWithoutAGap) {
   ASSERT_TRUE(open_device(*device));
   falcon_.velocity = {0.01, -0.005, 0.004};
   falcon_.chop = 11;  // pieces of packets
-  std::size_t heard = 0;
+  std::size_t reports = 0;
   std::int64_t last_ns = 0;
   glm::dvec3 begin{0.0};
   device->write({});
-  for (std::size_t reads = 0; heard < 3000; ++reads) {
+  for (std::size_t reads = 0; reports < 3000; ++reads) {
     ASSERT_LT(reads, 10000u);
     const DeviceReport report = device->read({});
     ASSERT_TRUE(report.heard) << reads;
-    if (heard == 0) begin = falcon_.grip - report.pose.position;
+    if (reports == 0) begin = falcon_.grip - report.pose.position;
     if (last_ns != 0) {
       EXPECT_EQ(falcon_.now_ns - last_ns, 1'000'000);
     }
     last_ns = falcon_.now_ns;
     // An encoder's count is some 36 µm of the grip.
-    EXPECT_LT(glm::distance(report.pose.position, falcon_.grip - begin), 100e-6) << heard;
-    if (heard > 20) {
+    EXPECT_LT(glm::distance(report.pose.position, falcon_.grip - begin), 100e-6) << reports;
+    if (reports > 20) {
       EXPECT_LT(glm::distance(report.twist.linear, falcon_.velocity), 0.02);
     }
-    ++heard;
+    ++reports;
     const std::size_t sent = falcon_.commands.size();
     device->write({});
     EXPECT_EQ(falcon_.commands.size(), sent + 1) << "one packet a reading";

@@ -86,14 +86,14 @@ TEST_F(FalconUsb, ThreeThousandReportsAtAKilohertzWithoutAGap) {
   std::size_t commands = 0;
   std::int64_t begin_ns = 0, last_ns = 0;
   std::uint32_t last_number = 0;
-  int heard = 0;
+  int reports = 0;
   // As a device's own thread is (DevicePort).
   std::thread([&] {
     become_device_thread("slosh-hand");
     for (int i = 0; i < kReports; ++i) {
       const DeviceReport report = device.read({});
       const std::int64_t now_ns = steady_now_ns();
-      heard += report.heard ? 1 : 0;
+      reports += report.heard ? 1 : 0;
       if (i == 0) {
         begin_ns = now_ns;
         commands = plugged.with([](FakeFalcon& f) { return f.commands.size(); });
@@ -106,13 +106,13 @@ TEST_F(FalconUsb, ThreeThousandReportsAtAKilohertzWithoutAGap) {
       device.write({{1.0, 0.0, 0.0}, {}});
     }
   }).join();
-  EXPECT_EQ(heard, kReports);
+  EXPECT_EQ(reports, kReports);
   EXPECT_EQ(plugged.with([](FakeFalcon& f) { return f.commands.size(); }) - commands,
             static_cast<std::size_t>(kReports))
       << "one packet of motor values a report";
   const double khz = 1e-3 * (kReports - 1) / to_seconds(last_ns - begin_ns);
   std::printf("%d reports by libusb at %.3f kHz; apart by %.3f ms in the middle, p99 %.3f, longest %.3f\n",
-              heard, khz, 1e3 * apart.percentile(0.5), 1e3 * apart.percentile(0.99), 1e3 * apart.max());
+              reports, khz, 1e3 * apart.percentile(0.5), 1e3 * apart.percentile(0.99), 1e3 * apart.max());
   RecordProperty("khz", std::to_string(khz));
   EXPECT_LE(khz, 1.001) << "no quicker than the bus";
 }

@@ -84,11 +84,11 @@ void MockedSpaceMouse::say(const std::vector<std::uint8_t>& report) {
     throw std::runtime_error("the mocked device could not speak");
 }
 
-std::vector<std::uint8_t> MockedSpaceMouse::hear(std::size_t size) {
-  std::vector<std::uint8_t> heard(size);
+std::vector<std::uint8_t> MockedSpaceMouse::receive(std::size_t size) {
+  std::vector<std::uint8_t> received(size);
   std::size_t done = 0;
   while (done < size) {
-    const ssize_t got = read(end_, heard.data() + done, size - done);
+    const ssize_t got = read(end_, received.data() + done, size - done);
     if (got < 0 && errno == EIO) {  // nobody has it open
       std::this_thread::sleep_for(std::chrono::milliseconds(1));
       continue;
@@ -96,7 +96,7 @@ std::vector<std::uint8_t> MockedSpaceMouse::hear(std::size_t size) {
     if (got <= 0) throw std::runtime_error("the mocked device could not listen");
     done += static_cast<std::size_t>(got);
   }
-  return heard;
+  return received;
 }
 
 void MockedSpaceMouse::unplug() {

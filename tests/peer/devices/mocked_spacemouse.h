@@ -32,7 +32,7 @@ class MockedSpaceMouse {
   /// One report; a reader gets it whole only when it took the one before, as the node is a terminal beneath.
   void say(const std::vector<std::uint8_t>& report);
   /// What was written to it since, waiting for `size` bytes.
-  std::vector<std::uint8_t> hear(std::size_t size);
+  std::vector<std::uint8_t> receive(std::size_t size);
   /// Reading fails from now on, and the node goes.
   void unplug();
   std::string node() const;

@@ -218,6 +218,11 @@ TEST_F(OscTracker, SaysWhatIsWrongWithWhatComes) {
   says(bytes(std::string("/a\0\0,f\0\0\0\0", 10)), place + "what came is cut short in a message's arguments");
   says(bytes(std::string("#bundle\0\0\0\0\0\0\0\0\0\0\0\0\x40", 20)),
        place + "what came is cut short in a bundle");
+  says(bytes(std::string("/a\0\0,b\0\0", 8)), place + "what came is cut short in a message's arguments");
+  std::string nested = std::string("/a\0\0,\0\0\0", 8);
+  for (int depth = 0; depth < 5; ++depth)
+    nested = std::string("#bundle\0\0\0\0\0\0\0\0\1\0\0\0", 19) + static_cast<char>(nested.size()) + nested;
+  says(bytes(nested), place + "what came has too many bundles in bundles");
   says([&] { lo_send(sender_, "/b", "f", 1.0f); }, "messages came that are none of it, the last /b");
   says([&] { lo_send(sender_, "/a", "if", 1, 1.0f); },
        "/a came with arguments of the types 'if', and its last 7 should be numbers");

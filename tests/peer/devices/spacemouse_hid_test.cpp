@@ -83,7 +83,7 @@ TEST_F(SpaceMouseHid, ReadsTranslationAndRotationApart) {
   SpaceMouseDevice device("", Pose{}, {1, 0, 0, 0}, clock());
   const Result<bool> opened = open_device(device);
   ASSERT_TRUE(opened) << opened.error().text();
-  EXPECT_EQ(mouse.hear(2), (std::vector<std::uint8_t>{4, 1})) << "its light goes on";
+  EXPECT_EQ(mouse.receive(2), (std::vector<std::uint8_t>{4, 1})) << "its light goes on";
   say(mouse, device, axes(1, {350, -20, 3}));
   say(mouse, device, axes(2, {-350, 400, 0}));
   say(mouse, device, {3, 0x05});
@@ -93,7 +93,7 @@ TEST_F(SpaceMouseHid, ReadsTranslationAndRotationApart) {
   EXPECT_EQ(device.read({0.0, 0.001}).buttons, 5u);
   EXPECT_EQ(live.state.battery, -1);
   device.close();
-  EXPECT_EQ(mouse.hear(2), (std::vector<std::uint8_t>{4, 0})) << "its light goes off";
+  EXPECT_EQ(mouse.receive(2), (std::vector<std::uint8_t>{4, 0})) << "its light goes off";
 }
 
 TEST_F(SpaceMouseHid, ReadsBothInOneReportAndTheBattery) {
@@ -200,7 +200,7 @@ TEST_F(SpaceMouseHid, UnpluggedInTheMiddleTheHandFadesToZeroAndComesBackWithIt) 
 
   MockedSpaceMouse again(machine_, 3, k3DconnexionVendor, kCompact, "C7");
   while (!device->live().there) tick();
-  EXPECT_EQ(again.hear(2), (std::vector<std::uint8_t>{4, 1}));
+  EXPECT_EQ(again.receive(2), (std::vector<std::uint8_t>{4, 1}));
   EXPECT_TRUE(kit.servo->failure(0).empty());
   while (std::abs(sent->force - 5.0) > 0.05) tick();
   again.say(axes(1, {0, 0, 100}));

@@ -146,8 +146,8 @@ class ScriptedHost final : public EndpointEvents {
   }
   void on_stream(ConnectionId, std::int64_t stream, std::span<const std::uint8_t> bytes, bool) override {
     control_ = stream;
-    (void)splitter_.feed(bytes,
-                         [this](std::uint64_t type, wire::ByteView payload) { return heard(type, payload); });
+    (void)splitter_.feed(
+        bytes, [this](std::uint64_t type, wire::ByteView payload) { return receive(type, payload); });
   }
   void on_datagram(ConnectionId, std::span<const std::uint8_t> bytes) override {
     datagrams += 1;
@@ -172,7 +172,7 @@ class ScriptedHost final : public EndpointEvents {
   }
 
  private:
-  wire::Fault heard(std::uint64_t type, wire::ByteView payload) {
+  wire::Fault receive(std::uint64_t type, wire::ByteView payload) {
     switch (static_cast<wire::ControlType>(type)) {
       case wire::ControlType::kHello: {
         wire::Hello hello;
@@ -280,8 +280,7 @@ struct Together {
   }
 
   /// Goes on for `seconds`, or until `done`; true when that came.
-  bool run(
-      double seconds, const std::function<bool()>& done = [] { return false; }) {
+  bool run(double seconds, const std::function<bool()>& done = [] { return false; }) {
     for (double passed = 0.0; passed < seconds; passed += 0.001) {
       network.advance(0.001);
       host.time += 0.001;

@@ -26,9 +26,9 @@ typedef struct tracker {
   struct port* port;
   struct tracker* next;
   /* What came, changed by whoever empties the port. */
-  osc_pose heard;
+  osc_pose received;
   int fresh; /* since its last reading */
-  double heard_s;
+  double received_s;
   unsigned long used, wrong;
   double wrong_s;
   char why[240];
@@ -97,19 +97,19 @@ static void take(void* whom, const osc_message* message) {
   int mine = 0;
   p->messages += 1;
   for (tracker* t = p->trackers; t != NULL; t = t->next) {
-    osc_pose pose = t->heard;
-    const int said = osc_form_hear(&t->form, message, &pose, t->why, sizeof t->why);
+    osc_pose pose = t->received;
+    const int said = osc_form_read(&t->form, message, &pose, t->why, sizeof t->why);
     mine |= said != 0;
     if (said < 0) {
       t->wrong += 1;
       t->wrong_s = now_s();
     } else if (said > 0) {
-      t->heard = pose;
+      t->received = pose;
       t->used += 1;
       /* A rotation that comes first waits for its place. */
       if (said == 2) {
         t->fresh = 1;
-        t->heard_s = now_s();
+        t->received_s = now_s();
       }
     }
   }
@@ -147,22 +147,22 @@ static void place_at(const tracker* t, double now, osc_pose* pose) {
 }
 
 static void set_out(tracker* t, double gap, double now) {
-  osc_pose here = t->heard;
+  osc_pose here = t->received;
   int leaps = !t->begun || gap > kSilent;
   if (!leaps) {
     place_at(t, now, &here);
     t->interval_s =
         fmin(kLongest, fmax(0.001, t->begun == 1 ? gap : t->interval_s + 0.2 * (gap - t->interval_s)));
     double far = 0.0;
-    for (int i = 0; i < 3; ++i) far += pow(t->heard.position[i] - here.position[i], 2.0);
+    for (int i = 0; i < 3; ++i) far += pow(t->received.position[i] - here.position[i], 2.0);
     leaps = sqrt(far) > kLeap * t->interval_s;
     t->begun = 2;
   } else {
     t->interval_s = 0.02;
     t->begun = 1;
   }
-  t->from = leaps ? t->heard : here;
-  t->to = t->heard;
+  t->from = leaps ? t->received : here;
+  t->to = t->received;
   t->begin_s = now;
 }
 
@@ -180,7 +180,7 @@ int slosh_device_open(const char* options, void** device, char* error, size_t si
     free(made);
     return -1;
   }
-  made->heard.orientation[0] = 1.0;
+  made->received.orientation[0] = 1.0;
   pthread_mutex_lock(&ports_mutex);
   port* p = ports;
   while (p != NULL && (p->number != made->form.port || strcmp(p->host, made->form.host) != 0)) p = p->next;
@@ -220,12 +220,12 @@ int slosh_device_read(void* device, slosh_device_reading* reading) {
   tracker* const t = device;
   const double now = now_s();
   pthread_mutex_lock(&t->port->mutex);
-  const double last = t->heard_s;
+  const double last = t->received_s;
   empty(t->port);
   const int fresh = t->fresh;
-  if (fresh) set_out(t, t->begun ? t->heard_s - last : 0.0, now);
+  if (fresh) set_out(t, t->begun ? t->received_s - last : 0.0, now);
   t->fresh = 0;
-  const int silent = !t->begun || now - t->heard_s > kSilent;
+  const int silent = !t->begun || now - t->received_s > kSilent;
   pthread_mutex_unlock(&t->port->mutex);
   if (silent) return 1;
   osc_pose pose;
@@ -263,16 +263,16 @@ int slosh_device_say(void* device, char* words, size_t size) {
   port* const p = t->port;
   const double now = now_s();
   pthread_mutex_lock(&p->mutex);
-  const int heard = t->begun || t->fresh, silent = heard && now - t->heard_s > kSilent;
+  const int received = t->begun || t->fresh, silent = received && now - t->received_s > kSilent;
   const int wrong = t->wrong > 0 && now - t->wrong_s < kLately;
-  if (heard && !silent) {
+  if (received && !silent) {
     if (wrong)
       snprintf(words, size, "%lu of %lu messages could not be used: %s", t->wrong, t->wrong + t->used,
                t->why);
     else
       snprintf(words, size, "%lu messages, a place each %.0f ms", t->used, 1e3 * t->interval_s);
   } else {
-    int at = silent ? snprintf(words, size, "the tracker is silent for %.1f s", now - t->heard_s)
+    int at = silent ? snprintf(words, size, "the tracker is silent for %.1f s", now - t->received_s)
                     : snprintf(words, size, "listening at %s:%d for %s", p->host, p->number,
                                t->form.entries[0].address);
     for (int i = 1; !silent && i < t->form.count && at > 0 && (size_t)at < size; ++i)
@@ -293,7 +293,7 @@ int slosh_device_say(void* device, char* words, size_t size) {
     }
   }
   pthread_mutex_unlock(&p->mutex);
-  return heard && !silent ? 0 : 1;
+  return received && !silent ? 0 : 1;
 }
 
 void slosh_device_close(void* device) {

@@ -157,8 +157,8 @@ static int is_of(const osc_form* form, const osc_message* message) {
 }
 
 /* What the last arguments of a message say: `numbers` of a place, and `turning` of a rotation. */
-static int hear(const osc_form* form, const osc_message* message, size_t place, size_t turning,
-                osc_pose* pose, char* error, size_t size) {
+static int read_pose(const osc_form* form, const osc_message* message, size_t place, size_t turning,
+                     osc_pose* pose, char* error, size_t size) {
   const size_t all = strlen(message->types), wanted = place + turning;
   double v[7];
   for (size_t i = 0; i < wanted; ++i) {
@@ -206,18 +206,18 @@ static int hear(const osc_form* form, const osc_message* message, size_t place, 
   return place > 0 ? 2 : 1;
 }
 
-int osc_form_hear(const osc_form* form, const osc_message* message, osc_pose* pose, char* error,
+int osc_form_read(const osc_form* form, const osc_message* message, osc_pose* pose, char* error,
                   size_t size) {
   for (int i = 0; i < form->count; ++i) {
     if (strcmp(message->address, form->entries[i].address) != 0 || !is_of(form, message)) continue;
     const size_t own = strlen(message->types) - (form->serial[0] != '\0' ? 1 : 0);
     switch (form->entries[i].what) {
       case OSC_POSITION:
-        return hear(form, message, 3, 0, pose, error, size);
+        return read_pose(form, message, 3, 0, pose, error, size);
       case OSC_ROTATION:
-        return hear(form, message, 0, own == 3 ? 3 : 4, pose, error, size);
+        return read_pose(form, message, 0, own == 3 ? 3 : 4, pose, error, size);
       case OSC_POSE:
-        return hear(form, message, 3, own == 6 ? 3 : 4, pose, error, size);
+        return read_pose(form, message, 3, own == 6 ? 3 : 4, pose, error, size);
     }
   }
   return 0;

@@ -32,6 +32,6 @@ int osc_form_parse(const char* options, osc_form* form, char* error, size_t size
 
 /* 0: the message is not of this tracker. 1: what it tells is in `pose`. 2: the same, and it tells where the
  * tracker is. -1: it is, and cannot be used: a sentence in `error`. */
-int osc_form_hear(const osc_form* form, const osc_message* message, osc_pose* pose, char* error, size_t size);
+int osc_form_read(const osc_form* form, const osc_message* message, osc_pose* pose, char* error, size_t size);
 
 #endif

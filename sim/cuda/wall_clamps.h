@@ -1,4 +1,4 @@
-// The bodies that particles are kept from passing (walls/wall_guard.h), as the GPU knows them.
+// The bodies that particles are kept from passing (walls/penetration_clamp.h), as the GPU knows them.
 #pragma once
 
 #include <span>
@@ -9,19 +9,19 @@
 
 namespace slosh::cuda {
 
-class WallGuards {
+class WallClamps {
  public:
   /// Takes the distance fields over, where the plan has the penetration clamp.
   void plan(const RunConstants& constants, const ParticleStart& start, std::size_t body_count,
             CallCheck& check);
   /// How many bodies; 0: no clamp.
-  std::size_t size() const { return guards_.size(); }
+  std::size_t size() const { return clamps_.size(); }
 
   /// The bodies' ways in this sub-step, to the GPU, unless it has them: bodies that stand still are sent
   /// once. The copy before has been made by now: the engine was waited for since, or the bodies stood still.
   void send(const Plan& plan, std::span<const RigidBody> before, std::span<const RigidBody> after,
             CallCheck& check, cudaStream_t stream);
-  GuardView view(const ImpulseUnits& units) const;
+  ClampView view(const ImpulseUnits& units) const;
 
   /// What walls took from particles, as ImpulseSums.
   const DeviceBuffer<std::int64_t>& impulses() const { return impulses_; }
@@ -30,7 +30,7 @@ class WallGuards {
   }
   /// Hands what the bodies have to be given over to `out`, kImpulseWords a body, and begins anew.
   void hand_over(unsigned char* out, CallCheck& check, cudaStream_t stream) const;
-  std::size_t handed_bytes() const { return guards_.size() * kImpulseWords * sizeof(std::int64_t); }
+  std::size_t handed_bytes() const { return clamps_.size() * kImpulseWords * sizeof(std::int64_t); }
 
  private:
   /// All of a body that its way depends on.
@@ -45,9 +45,9 @@ class WallGuards {
   std::vector<Place> places_;   // before and after, of each
   DeviceBuffer<float> fields_;  // one after the other
   std::vector<DistanceFieldView> views_;
-  std::vector<GuardedBody> guarded_;
-  DeviceBuffer<DeviceGuard> guards_;
-  PinnedBuffer<DeviceGuard> sent_;
+  std::vector<ClampBody> clamped_;
+  DeviceBuffer<DeviceClamp> clamps_;
+  PinnedBuffer<DeviceClamp> sent_;
   bool any_fast_ = false;
   DeviceBuffer<std::int64_t> impulses_;
 };

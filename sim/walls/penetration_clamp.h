@@ -12,7 +12,7 @@
 namespace slosh {
 
 /// A body's solid and its way through one sub-step.
-struct GuardedBody {
+struct ClampBody {
   DistanceFieldView field;      ///< in the memory of whoever reads it
   SurfaceMotion before, after;  ///< as the sub-step begins and ends; of `before` only the place counts
   glm::vec3 middle{0.0f};       ///< of the field's box as the sub-step ends, m, world
@@ -22,7 +22,7 @@ struct GuardedBody {
   bool fast = false;
 };
 
-namespace wall_guard {
+namespace penetration_clamp {
 
 inline constexpr float kRest = 0.95f;      ///< of the depth: where a particle is put back to
 inline constexpr float kStride = 0.7f;     ///< of the depth, between two looks along the way
@@ -76,16 +76,16 @@ SLOSH_HD inline bool follow(const DistanceFieldView& field, float depth, const g
   return true;
 }
 
-}  // namespace wall_guard
+}  // namespace penetration_clamp
 
 /// Looks at a particle's way from `from` (m, world, as the sub-step began) to `x` against one body. A way
-/// that leads deeper into the solid than GuardedBody::depth, or through it, is bent: the particle slides on
+/// that leads deeper into the solid than ClampBody::depth, or through it, is bent: the particle slides on
 /// along the wall, on the side that it came from, and loses that part of `v` (m/s) which goes into the wall.
 /// True when that was so; else nothing is changed. All finite. A particle that was deep in the solid before
 /// is left alone.
-SLOSH_HD inline bool guard_particle(const GuardedBody& body, const glm::vec3& from, glm::vec3& x,
+SLOSH_HD inline bool clamp_particle(const ClampBody& body, const glm::vec3& from, glm::vec3& x,
                                     glm::vec3& v) {
-  using namespace wall_guard;
+  using namespace penetration_clamp;
   const glm::vec3 off = x - body.middle;
   if (glm::dot(off, off) > body.reach * body.reach) return false;
   const glm::vec3 begin = glm::transpose(body.before.turn) * (from - body.before.shift);
@@ -123,17 +123,17 @@ SLOSH_HD inline bool guard_particle(const GuardedBody& body, const glm::vec3& fr
 /// sub-step began; else only fast bodies are looked at. Calls taken(body, from, before) whenever one has bent
 /// it: where (m) and how fast (m/s) it would have been. True when one did.
 template <class BodyAt, class Taken>
-SLOSH_HD inline bool guard_against_all(BodyAt&& body_at, std::uint32_t count, bool near,
+SLOSH_HD inline bool clamp_against_all(BodyAt&& body_at, std::uint32_t count, bool near,
                                        const glm::vec3& from, glm::vec3& x, glm::vec3& v, Taken&& taken) {
   constexpr int kRounds = 3;
   bool any = false;
   for (int round = 0; round < kRounds; ++round) {
     bool bent = false;
     for (std::uint32_t b = 0; b < count; ++b) {
-      const GuardedBody& body = body_at(b);
+      const ClampBody& body = body_at(b);
       if (!near && !body.fast) continue;
       const glm::vec3 to = x, before = v;
-      if (!guard_particle(body, from, x, v)) continue;
+      if (!clamp_particle(body, from, x, v)) continue;
       taken(b, to, before);
       bent = true;
     }

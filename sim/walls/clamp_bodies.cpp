@@ -1,4 +1,4 @@
-#include "sim/walls/guarded_bodies.h"
+#include "sim/walls/clamp_bodies.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,8 +7,8 @@
 
 namespace slosh {
 
-std::vector<DistanceField> guarded_fields(const Scene& scene, const SampledScene& sampled, const Plan& plan) {
-  if (!plan.guards_walls()) return std::vector<DistanceField>(sampled.distance_fields.size());
+std::vector<DistanceField> clamp_fields(const Scene& scene, const SampledScene& sampled, const Plan& plan) {
+  if (!plan.clamps_penetration()) return std::vector<DistanceField>(sampled.distance_fields.size());
   std::vector<DistanceField> fields = sampled.distance_fields;
   const FixedSolids fixed = fixed_solids(scene, sampled);
   std::vector<DistanceField*> of_fixed;
@@ -17,16 +17,16 @@ std::vector<DistanceField> guarded_fields(const Scene& scene, const SampledScene
   return fields;
 }
 
-void guard_bodies(std::span<const DistanceFieldView> fields, const Plan& plan,
-                  std::span<const RigidBody> before, std::span<const RigidBody> after,
-                  std::vector<GuardedBody>& out) {
+void place_clamp_bodies(std::span<const DistanceFieldView> fields, const Plan& plan,
+                        std::span<const RigidBody> before, std::span<const RigidBody> after,
+                        std::vector<ClampBody>& out) {
   out.resize(before.size());
   // Whoever has no particle of a body within the cells around it is this far from its surface at least, less
   // what it goes itself at the speed limit.
-  const double near = std::max(0.0, 0.5 * plan.support_radius - (1.0 - kGuardDepth) * plan.spacing);
+  const double near = std::max(0.0, 0.5 * plan.support_radius - (1.0 - kClampDepth) * plan.spacing);
   for (std::size_t b = 0; b < out.size(); ++b) {
-    GuardedBody& g = out[b];
-    g = GuardedBody{};
+    ClampBody& g = out[b];
+    g = ClampBody{};
     if (b >= fields.size() || fields[b].distance == nullptr) continue;
     g.field = fields[b];
     g.before = surface_motion(before[b]);
@@ -44,8 +44,8 @@ void guard_bodies(std::span<const DistanceFieldView> fields, const Plan& plan,
     // a drop would stay for good.
     const float spacing = static_cast<float>(plan.spacing);
     g.depth =
-        std::clamp(static_cast<float>(kGuardDepth) * 2.0f * g.field.cell,
-                   static_cast<float>(kGuardDepth) * spacing, static_cast<float>(kMaxGuardDepth) * spacing);
+        std::clamp(static_cast<float>(kClampDepth) * 2.0f * g.field.cell,
+                   static_cast<float>(kClampDepth) * spacing, static_cast<float>(kMaxClampDepth) * spacing);
     g.fast = travel > static_cast<float>(near);
   }
 }

@@ -1,5 +1,5 @@
 // A particle's way against walls, one by one: thin ones, moving ones, corners, joints.
-#include "sim/walls/wall_guard.h"
+#include "sim/walls/penetration_clamp.h"
 
 #include <gtest/gtest.h>
 
@@ -9,8 +9,8 @@
 
 #include "scenes/sample.h"
 #include "sim/bodies/rigid_body.h"
-#include "sim/walls/guard_impulse.h"
-#include "sim/walls/guarded_bodies.h"
+#include "sim/walls/clamp_bodies.h"
+#include "sim/walls/clamp_impulse.h"
 
 namespace slosh {
 namespace {
@@ -22,7 +22,7 @@ constexpr float kRounding = 1e-6f;  // m
 /// A solid given by its exact distance on a grid as the sampler's, moving from `before` to `after`.
 struct Solid {
   std::vector<float> values;
-  GuardedBody body;
+  ClampBody body;
 
   template <class Distance>
   Solid(const glm::vec3& low, const glm::vec3& high, Distance distance) {
@@ -69,14 +69,14 @@ struct Noise {
   }
 };
 
-TEST(WallGuard, leaves_alone_what_stays_outside) {
+TEST(PenetrationClamp, leaves_alone_what_stays_outside) {
   const Solid wall = plate(1.5f);
   const glm::vec3 from(-0.5f * kSpacing, 0.0f, 0.0f);
   glm::vec3 x(-0.1f * kSpacing, 0.3f * kSpacing, 0.0f), v(1.0f, 2.0f, 3.0f);
   const glm::vec3 x_before = x, v_before = v;
-  EXPECT_FALSE(guard_particle(wall.body, from, x, v));
+  EXPECT_FALSE(clamp_particle(wall.body, from, x, v));
   x.x = 0.3f * kSpacing;
-  EXPECT_FALSE(guard_particle(wall.body, from, x, v)) << "shallower than the depth";
+  EXPECT_FALSE(clamp_particle(wall.body, from, x, v)) << "shallower than the depth";
   EXPECT_EQ(x.y, x_before.y);
   EXPECT_EQ(v, v_before);
 }
@@ -95,7 +95,7 @@ TEST_P(Thickness, no_way_leads_through) {
         const glm::vec3 from = x;
         v = {1.0f, 0.2f, 0.0f};
         x += length * kSpacing * glm::vec3(1.0f, 0.0f, 0.0f);
-        guard_particle(wall.body, from, x, v);
+        clamp_particle(wall.body, from, x, v);
         ASSERT_LT(x.x, 0.5f * back) << "length " << length << ", step " << step << ", y " << y;
       }
       EXPECT_LE(v.x, 1e-6f);
@@ -108,7 +108,7 @@ TEST_P(Thickness, no_way_leads_through) {
 INSTANTIATE_TEST_SUITE_P(spacings, Thickness, ::testing::Values(1.0f, 1.2f, 1.33f, 1.5f, 3.0f));
 
 // A particle at rest, and a wall that comes over it: up to eight spacings a step.
-TEST(WallGuard, wall_that_overtakes_takes_the_particle_along) {
+TEST(PenetrationClamp, wall_that_overtakes_takes_the_particle_along) {
   for (const float way : {0.2f, 1.0f, 4.0f, 8.0f}) {
     Solid wall = plate(1.0f);
     const float dt = 0.002f;
@@ -119,7 +119,7 @@ TEST(WallGuard, wall_that_overtakes_takes_the_particle_along) {
       wall.body.after.shift += dt * wall.body.after.velocity;
       const glm::vec3 from = x;
       x += dt * v;
-      guard_particle(wall.body, from, x, v);
+      clamp_particle(wall.body, from, x, v);
       ASSERT_LT(x.x - wall.body.after.shift.x, 0.5f * kSpacing) << way << " spacings a step, step " << step;
     }
     EXPECT_NEAR(v.x / wall.body.after.velocity.x, 1.0f, 1e-4f) << way;
@@ -127,14 +127,14 @@ TEST(WallGuard, wall_that_overtakes_takes_the_particle_along) {
 }
 
 // Turned by 20° in a step about a far axis: what it pushes goes as fast as the wall does there.
-TEST(WallGuard, wall_that_turns) {
+TEST(PenetrationClamp, wall_that_turns) {
   Solid wall = plate(1.0f);
   const float angle = 0.35f, dt = 0.01f, c = std::cos(angle), s = std::sin(angle);
   wall.body.after.turn = glm::mat3(c, s, 0.0f, -s, c, 0.0f, 0.0f, 0.0f, 1.0f);
   wall.body.after.angular_velocity = {0.0f, 0.0f, angle / dt};
   const glm::vec3 from(-0.5f * kSpacing, 0.05f, 0.0f);
   glm::vec3 x = from, v(0.0f);
-  EXPECT_TRUE(guard_particle(wall.body, from, x, v));
+  EXPECT_TRUE(clamp_particle(wall.body, from, x, v));
   EXPECT_GE(wall.distance(x), -kDepth - kRounding);
   const glm::vec3 normal = wall.body.after.turn * glm::vec3(-1.0f, 0.0f, 0.0f);
   EXPECT_LT(glm::dot(x, normal), kDepth);
@@ -142,7 +142,7 @@ TEST(WallGuard, wall_that_turns) {
 }
 
 // Into the corner of a vessel, along no wall in particular.
-TEST(WallGuard, corner_of_a_vessel_holds) {
+TEST(PenetrationClamp, corner_of_a_vessel_holds) {
   const glm::vec3 half(0.04f), wall(1.5f * kSpacing);
   const Solid vessel(-half - wall, half + wall, [&](const glm::vec3& p) {
     return std::max(box_distance(p, -half - wall, half + wall), -box_distance(p, -half, half));
@@ -155,7 +155,7 @@ TEST(WallGuard, corner_of_a_vessel_holds) {
       if (step % 20 == 0) way = glm::normalize(glm::vec3(noise(), noise(), noise())) * 1.5f * kSpacing;
       const glm::vec3 from = x;
       x += way;
-      guard_particle(vessel.body, from, x, v);
+      clamp_particle(vessel.body, from, x, v);
       const glm::vec3 out = glm::abs(x) - half;
       ASSERT_LT(std::max({out.x, out.y, out.z}), 0.5f * kSpacing) << "particle " << particle;
     }
@@ -179,7 +179,7 @@ TEST_P(ConvexCorner, lets_go_whom_walls_push_out) {
       for (const glm::vec3& way :
            {glm::vec3(1.0f), glm::vec3(0.9f, 1.2f, 0.8f), glm::vec3(2.0f, 1.0f, 1.0f)}) {
         glm::vec3 x = from + length * kSpacing * glm::normalize(way), v = way;
-        EXPECT_FALSE(guard_particle(cube.body, from, x, v))
+        EXPECT_FALSE(clamp_particle(cube.body, from, x, v))
             << length << " spacings from " << behind.x << " " << behind.y << " " << behind.z
             << " m behind its faces";
         ++within;
@@ -205,7 +205,7 @@ TEST_P(ConvexCorner, lets_pass_whoever_grazes_it) {
     if (deepest == 0.0f || deepest > 0.3f * kDepth) continue;
     ++grazing;
     glm::vec3 x = to, v = to - from;
-    EXPECT_FALSE(guard_particle(cube.body, from, x, v)) << deepest / kSpacing << " spacings deep";
+    EXPECT_FALSE(clamp_particle(cube.body, from, x, v)) << deepest / kSpacing << " spacings deep";
   }
   EXPECT_GT(grazing, 1000);
 }
@@ -213,16 +213,16 @@ TEST_P(ConvexCorner, lets_pass_whoever_grazes_it) {
 INSTANTIATE_TEST_SUITE_P(cells, ConvexCorner, ::testing::Values(0.0f, 0.15f, 0.3f, 0.45f, 0.6f, 0.75f));
 
 // Floor and wall are two bodies that touch: one sends the particle to the other and back.
-TEST(WallGuard, joint_of_two_bodies_holds) {
+TEST(PenetrationClamp, joint_of_two_bodies_holds) {
   const Solid bodies[] = {box({-0.06f, -0.015f, -0.06f}, {0.06f, 0.0f, 0.06f}),
                           box({0.0f, -0.015f, -0.06f}, {0.015f, 0.06f, 0.06f})};
-  const auto at = [&](std::uint32_t b) -> const GuardedBody& { return bodies[b].body; };
+  const auto at = [&](std::uint32_t b) -> const ClampBody& { return bodies[b].body; };
   glm::vec3 x(-0.5f * kSpacing, 0.5f * kSpacing, 0.0f), v(1.0f, -1.0f, 0.5f);
   int taken[2] = {0, 0};
   for (int step = 0; step < 50; ++step) {
     const glm::vec3 from = x;
     x += glm::vec3(0.8f, -0.8f, 0.1f) * kSpacing;
-    guard_against_all(at, 2, true, from, x, v, [&](std::uint32_t b, auto&&...) { ++taken[b]; });
+    clamp_against_all(at, 2, true, from, x, v, [&](std::uint32_t b, auto&&...) { ++taken[b]; });
     ASSERT_LT(x.x, 0.5f * kSpacing);
     ASSERT_GT(x.y, -0.5f * kSpacing);
     x.z = 0.0f;
@@ -234,19 +234,19 @@ TEST(WallGuard, joint_of_two_bodies_holds) {
   EXPECT_NEAR(v.z, 0.5f, 1e-4f);
 }
 
-TEST(WallGuard, far_particles_meet_fast_bodies_only) {
+TEST(PenetrationClamp, far_particles_meet_fast_bodies_only) {
   Solid wall = plate(1.5f);
-  const auto at = [&](std::uint32_t) -> const GuardedBody& { return wall.body; };
+  const auto at = [&](std::uint32_t) -> const ClampBody& { return wall.body; };
   for (const bool fast : {false, true}) {
     wall.body.fast = fast;
     glm::vec3 x(kSpacing, 0.0f, 0.0f), v(1.0f, 0.0f, 0.0f);
-    EXPECT_EQ(guard_against_all(at, 1, false, {-kSpacing, 0.0f, 0.0f}, x, v, [](auto&&...) {}), fast);
+    EXPECT_EQ(clamp_against_all(at, 1, false, {-kSpacing, 0.0f, 0.0f}, x, v, [](auto&&...) {}), fast);
   }
 }
 
 // What a particle loses, in momentum and in angular momentum about any point, is what is written down, in
 // whatever order it is added.
-TEST(GuardImpulse, is_what_the_particle_lost) {
+TEST(ClampImpulse, is_what_the_particle_lost) {
   const ImpulseUnits units = impulse_units(1e-3, 10.0, 0.01);
   const PutBack p{1e-3f, {0.1f, 0.2f, 0.3f}, {0.09f, 0.2f, 0.31f}, {3.0f, -2.0f, 1.0f}, {0.0f, -2.0f, 1.5f}};
   const glm::dvec3 center(0.5, -0.1, 0.2);
