@@ -45,17 +45,17 @@ double ForceRendering::shaped_share() const noexcept {
 
 Wrench ForceRendering::couple(const StateFreshness& world, const DeviceReport& hand, const GripState& grip,
                               const Moment& now) noexcept {
-  double believed = std::min(world.share, now.device_share);
+  double fresh = std::min(world.share, now.device_share);
   bool current = world.current && now.device_share >= 1.0;
   if (world.anew) begun_ = false;
-  begun_ = begun_ || (believed >= 1.0 && current);
-  const bool reaches = !gives_way_ || (begun_ && believed > 0.0);
+  begun_ = begun_ || (fresh >= 1.0 && current);
+  const bool reaches = !gives_way_ || (begun_ && fresh > 0.0);
   // Where the host keeps no stand, its hold begins with the first pose: until then the one here is as if all
   // were well, so that both go together; the force is none.
-  if (!begun_) believed = 1.0, current = true;
-  jumps_ = world.anew || world.resumed || believed < believed_ - kSudden || (current && !current_);
+  if (!begun_) fresh = 1.0, current = true;
+  jumps_ = world.anew || world.resumed || fresh < fresh_ - kSudden || (current && !current_);
   current_ = current;
-  if (world.anew || now.leapt || (believed >= 1.0 && hold_anew_)) {
+  if (world.anew || now.leapt || (fresh >= 1.0 && hold_anew_)) {
     engagement_.take_hold_anew();
     jumps_ = true;
   }
@@ -67,10 +67,10 @@ Wrench ForceRendering::couple(const StateFreshness& world, const DeviceReport& h
   const bool begins = world.anew || now.leapt || (hand.engaged && !held_on_);
   held_on_ = hand.engaged;
   if (gentle_ && begins) share_ = 0.0;
-  hold_anew_ = believed < 1.0;
-  believed_ = believed;
+  hold_anew_ = fresh < 1.0;
+  fresh_ = fresh;
   // What comes back after a gap comes back as gently as it went.
-  share_ = begun_ ? std::min(believed, share_ + now.period / rise_) : gentle_ ? 0.0 : 1.0;
+  share_ = begun_ ? std::min(fresh, share_ + now.period / rise_) : gentle_ ? 0.0 : 1.0;
 
   CouplingGains gains = gains_;
   gains.damping = std::min(gains.damping, now.pace * most_damping_);
@@ -94,7 +94,7 @@ ForceLimiter::Outcome ForceRendering::finish(Wrench wanted, const Twist& twist, 
   if (is_finite(wanted)) {
     wanted = begun_ ? capped(wanted, current_) : Wrench{};
     const double share = shaped_share();
-    const double damped = begun_ && engagement_.engaged() ? believed_ * (1.0 - share) : 0.0;
+    const double damped = begun_ && engagement_.engaged() ? fresh_ * (1.0 - share) : 0.0;
     wanted = {share * wanted.force - damped * damping_ * twist.linear,
               share * wanted.torque - damped * rotational_damping_ * twist.angular};
     if (jumps_) {

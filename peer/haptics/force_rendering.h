@@ -137,7 +137,7 @@ class ForceRendering {
   double share_ = 1.0;
   double kept_force_ = 0.0;   // N and
   double kept_torque_ = 0.0;  // N·m that the hand felt when it re-engaged
-  double believed_ = 1.0;     // at the call before
+  double fresh_ = 1.0;        // share of freshness at the call before
   bool begun_ = false;  // world and device were both fresh since the device came, or the world was reset
   bool felt_ = false;
   bool hold_anew_ = false;   // updates had stopped

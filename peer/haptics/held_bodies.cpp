@@ -57,7 +57,7 @@ HeldBodies::HeldBodies(const Scene& scene, Coupling coupling)
   }
 }
 
-void HeldBodies::hear(const BodyMessage& newest, bool fresh, std::int64_t now_ns) noexcept {
+void HeldBodies::update(const BodyMessage& newest, bool fresh, std::int64_t now_ns) noexcept {
   began_ = false;
   for (Entry& entry : bodies_) entry.anew = false;
   const bool stands = newest.rate <= 0.0;

@@ -31,9 +31,9 @@ class HeldBodies {
   static constexpr double kFar = 0.02;
 
   /// Once a tick: the newest state and whether it came since the tick before.
-  void hear(const BodyMessage& newest, bool fresh, std::int64_t now_ns) noexcept;
+  void update(const BodyMessage& newest, bool fresh, std::int64_t now_ns) noexcept;
 
-  /// Whether the body of grip `i` was restarted in the last hear(): its hands re-engage.
+  /// Whether the body of grip `i` was restarted in the last update(): its hands re-engage.
   bool anew(std::size_t i) const noexcept;
   /// The device of grip `i` was read here, and at the reading before there.
   void read(std::size_t i, const Pose& before, const Pose& now) noexcept;

@@ -76,10 +76,10 @@ void LinkFreshness::turn_to_speak(bool heard, std::int64_t now_ns) noexcept {
   }
 }
 
-StateFreshness LinkFreshness::hear(const BodyMessage& message, bool fresh, std::int64_t now_ns) noexcept {
+StateFreshness LinkFreshness::update(const BodyMessage& message, bool fresh, std::int64_t now_ns) noexcept {
   if (fresh || !ticked_) heard_ns_ = now_ns;
-  StateFreshness belief;
-  belief.anew = ticked_ && message.run != run_;
+  StateFreshness found;
+  found.anew = ticked_ && message.run != run_;
   run_ = message.run;
   ticked_ = true;
   const double since_heard = to_seconds(now_ns - heard_ns_);
@@ -88,10 +88,10 @@ StateFreshness LinkFreshness::hear(const BodyMessage& message, bool fresh, std::
     // After the first step a pace of 0 means that the world stopped: it holds nothing up any more. Before it
     // no world far away follows anybody's poses.
     const bool waits_here = message.bodies.tick == 0 && message.heard_pose_ns == kPoseNotTold;
-    belief.share = waits_here ? share : std::min(share, stopped_share(now_ns));
-    belief.current = waits_here && belief.share >= 1.0;
+    found.share = waits_here ? share : std::min(share, stopped_share(now_ns));
+    found.current = waits_here && found.share >= 1.0;
     turn_to_speak(share >= 1.0, now_ns);
-    return belief;
+    return found;
   }
   stopped_ns_ = 0;
   const double age = to_seconds(now_ns - message.stamp_ns);  // negative while the state is still to come
@@ -100,11 +100,11 @@ StateFreshness LinkFreshness::hear(const BodyMessage& message, bool fresh, std::
   const double way = 0.5 * latest_;
   const double states = std::min(freshness(age, interval, way), freshness(since_heard, interval, way));
   turn_to_speak(states >= 1.0, now_ns);
-  belief.current = age <= 2.0 * interval + period_;
-  belief.resumed = fresh && late_;
-  late_ = !belief.current;
-  belief.share = running_share_ = std::min(states, follow_poses(message, belief.current));
-  return belief;
+  found.current = age <= 2.0 * interval + period_;
+  found.resumed = fresh && late_;
+  late_ = !found.current;
+  found.share = running_share_ = std::min(states, follow_poses(message, found.current));
+  return found;
 }
 
 }  // namespace slosh

@@ -34,9 +34,9 @@ class LinkFreshness {
   explicit LinkFreshness(double period) : period_(period) {}
 
   /// Once a tick, with the newest state and whether it came since the tick before.
-  StateFreshness hear(const BodyMessage& message, bool fresh, std::int64_t now_ns) noexcept;
+  StateFreshness update(const BodyMessage& message, bool fresh, std::int64_t now_ns) noexcept;
 
-  /// Whether poses are to be sent in this tick. After hear().
+  /// Whether poses are to be sent in this tick. After update().
   bool speaks() const { return speaks_; }
 
  private:

@@ -266,13 +266,13 @@ void Servo::tick(std::int64_t now_ns, bool fresh) noexcept {
   const BodySnapshot& bodies = message.bodies;
   const double age = to_seconds(now_ns - message.stamp_ns);  // negative while the state is still to come
 
-  const StateFreshness belief = link_freshness_.hear(message, fresh, now_ns);
+  const StateFreshness world = link_freshness_.update(message, fresh, now_ns);
   const bool fresh_newest = channel_.newest().update();
   states_apart_ = states_apart_ || fresh_newest;
   if (states_apart_)
-    held_.hear(channel_.newest().front(), fresh_newest, now_ns);
+    held_.update(channel_.newest().front(), fresh_newest, now_ns);
   else
-    held_.hear(message, fresh, now_ns);
+    held_.update(message, fresh, now_ns);
   follow_run(message);
   follow_pace(message);
   note_steps(message);
@@ -286,7 +286,7 @@ void Servo::tick(std::int64_t now_ns, bool fresh) noexcept {
   const double ahead = std::clamp(time_ - bodies.time, -longest, longest);
 
   const bool stopped = message.rate <= 0.0 && bodies.tick > 0;
-  stands_ = stopped || (bodies.tick > 0 && belief.share < 1.0);
+  stands_ = stopped || (bodies.tick > 0 && world.share < 1.0);
   const bool samples = sample_due(stopped);
   if (ticks_ == 0) first_tick_ns_ = tick_before_ns_ = now_ns;
   for (std::size_t i = 0; i < hands_.size(); ++i) {
@@ -322,7 +322,7 @@ void Servo::tick(std::int64_t now_ns, bool fresh) noexcept {
       GripState grip = bodies.grips[i];
       grip.pose = extrapolate(grip.pose, grip.twist, ahead);
       if (port->device().gives_way()) grip = held_.grip(i, grip);
-      felt = hand.felt.feel(belief, hand.good, grip,
+      felt = hand.felt.feel(world, hand.good, grip,
                             {time_, options_.period, device_share, hand.leapt, another_holds(message, i),
                              message.stands_until_felt, pace_of(hand)},
                             [&](const Wrench& wanted) {

@@ -45,7 +45,7 @@ double share_of(const Site& site, double seconds) {
         model.tick = message.bodies.tick;
       }
     }
-    held.hear(message, fresh, now_ns);
+    held.update(message, fresh, now_ns);
     held.sent(0, {}, true, Pose{}, Twist{}, 0.0, false);
     held.advance(now_ns + 1'000'000, 1.0, 0.001);
   }

@@ -14,9 +14,9 @@ constexpr double kLag = 0.02;  // s from a pose to a state that follows it
 
 /// A world at its pace over a link, ticked each millisecond.
 struct Link {
-  LinkFreshness hearing{kPeriod};
+  LinkFreshness rule{kPeriod};
   BodyMessage message;
-  StateFreshness belief;
+  StateFreshness found;
   double lag = kLag;
   int up_ends_ms = 1 << 30;  // poses read after this are lost
   int ms = 1000;
@@ -35,14 +35,14 @@ struct Link {
     for (int i = 0; i < count; ++i) {
       ms += 1;
       const int read_ms = ms - static_cast<int>(1e3 * lag + 0.5);
-      if (up && hearing.speaks() && read_ms <= up_ends_ms) said_ns = std::int64_t{read_ms} * 1'000'000;
+      if (up && rule.speaks() && read_ms <= up_ends_ms) said_ns = std::int64_t{read_ms} * 1'000'000;
       if (up) arrived_ns = std::max(arrived_ns, said_ns);
       if (down) {
         message.stamp_ns = now();
         message.heard_pose_ns = arrived_ns;
         message.bodies.tick += 1;
       }
-      belief = hearing.hear(message, down, now());
+      found = rule.update(message, down, now());
     }
   }
 };
@@ -50,9 +50,9 @@ struct Link {
 TEST(LinkFreshness, BelievesAWorldAtItsPace) {
   Link link;
   link.run(500);
-  EXPECT_EQ(link.belief.share, 1.0);
-  EXPECT_TRUE(link.belief.current);
-  EXPECT_TRUE(link.hearing.speaks());
+  EXPECT_EQ(link.found.share, 1.0);
+  EXPECT_TRUE(link.found.current);
+  EXPECT_TRUE(link.rule.speaks());
 }
 
 /// Over a long link the first state that can follow us is a round trip away: until then there is nothing to
@@ -62,13 +62,13 @@ TEST(LinkFreshness, BelievesNothingBeforeTheFirstAnswer) {
   link.up = false;
   for (int ms = 0; ms < 2000; ++ms) {
     link.run(1);
-    ASSERT_EQ(link.belief.share, 0.0) << ms;
-    ASSERT_TRUE(link.hearing.speaks());
+    ASSERT_EQ(link.found.share, 0.0) << ms;
+    ASSERT_TRUE(link.rule.speaks());
   }
   link.up = true;
   link.run(1);
-  EXPECT_EQ(link.belief.share, 1.0);
-  EXPECT_TRUE(link.belief.current);
+  EXPECT_EQ(link.found.share, 1.0);
+  EXPECT_TRUE(link.found.current);
 }
 
 /// A world far away that waits for its first step follows nobody: it may receive us or not.
@@ -76,11 +76,11 @@ TEST(LinkFreshness, AWorldFarAwayThatWaitsIsNotBelieved) {
   Link link;
   link.message.rate = 0.0;
   link.run(500);
-  EXPECT_EQ(link.belief.share, 0.0);
-  EXPECT_TRUE(link.hearing.speaks());
+  EXPECT_EQ(link.found.share, 0.0);
+  EXPECT_TRUE(link.rule.speaks());
   link.message.rate = 1.0;
   link.run(1);
-  EXPECT_EQ(link.belief.share, 1.0);
+  EXPECT_EQ(link.found.share, 1.0);
 }
 
 /// Where poses stop, nobody can know before an answer is due: the force is over 400 ms after the last pose
@@ -91,15 +91,15 @@ TEST(LinkFreshness, APauseTakesTheForceAwayAsASilenceDoes) {
   link.run(500);
   link.message.rate = 0.0;
   link.run(91);
-  EXPECT_NEAR(link.belief.share, 1.0 - 0.09 / kFadeStale, 1e-9);
-  EXPECT_FALSE(link.belief.current);
+  EXPECT_NEAR(link.found.share, 1.0 - 0.09 / kFadeStale, 1e-9);
+  EXPECT_FALSE(link.found.current);
   link.message.rate = 1.0;
   link.run(1);
-  EXPECT_EQ(link.belief.share, 1.0);
+  EXPECT_EQ(link.found.share, 1.0);
   link.message.rate = 0.0;
   link.run(static_cast<int>(1e3 * kFadeStale) + 2);
-  EXPECT_EQ(link.belief.share, 0.0);
-  EXPECT_TRUE(link.hearing.speaks());
+  EXPECT_EQ(link.found.share, 0.0);
+  EXPECT_TRUE(link.rule.speaks());
 }
 
 TEST(LinkFreshness, PosesThatStopEndTheForceWithin400MillisecondsOfTheFault) {
@@ -107,15 +107,15 @@ TEST(LinkFreshness, PosesThatStopEndTheForceWithin400MillisecondsOfTheFault) {
     Link link;
     link.lag = lag;
     link.run(3000);
-    EXPECT_EQ(link.belief.share, 1.0);
+    EXPECT_EQ(link.found.share, 1.0);
     // What is on its way still comes: the last pose that is heard was read now.
     const int fault = link.ms;
     link.up_ends_ms = fault;
     double before = 1.0;
-    while (link.belief.share > 0.0 && link.ms < fault + 2000) {
+    while (link.found.share > 0.0 && link.ms < fault + 2000) {
       link.run(1);
-      EXPECT_GT(link.belief.share, before - 0.0101) << "no quicker than a tenth of a second";
-      before = link.belief.share;
+      EXPECT_GT(link.found.share, before - 0.0101) << "no quicker than a tenth of a second";
+      before = link.found.share;
     }
     EXPECT_NEAR(link.ms - fault, after, 12) << lag;
   }
@@ -129,7 +129,7 @@ TEST(LinkFreshness, StatesThatStopEndTheForceWithin400MillisecondsOfTheFault) {
     link.run(3000);
     link.down = false;
     const int last = link.ms;
-    while (link.belief.share > 0.0 && link.ms < last + 2000) link.run(1);
+    while (link.found.share > 0.0 && link.ms < last + 2000) link.run(1);
     EXPECT_NEAR(link.ms - last, after, 5)
         << lag << ": by what was heard last, half of it earlier by the host's clock";
   }
@@ -140,15 +140,15 @@ TEST(LinkFreshness, AStateThatDoesNotFollowOurPosesFadesAsALateOneDoes) {
   link.run(500);
   link.up = false;
   link.run(50);
-  EXPECT_FALSE(link.belief.current) << "the body no longer follows: what stretches now is the link's";
-  EXPECT_EQ(link.belief.share, 1.0);
-  EXPECT_TRUE(link.hearing.speaks()) << "how else would the host hear it again";
+  EXPECT_FALSE(link.found.current) << "the body no longer follows: what stretches now is the link's";
+  EXPECT_EQ(link.found.share, 1.0);
+  EXPECT_TRUE(link.rule.speaks()) << "how else would the host hear it again";
   link.run(400);
-  EXPECT_EQ(link.belief.share, 0.0);
+  EXPECT_EQ(link.found.share, 0.0);
   link.up = true;
   link.run(3);
-  EXPECT_EQ(link.belief.share, 1.0);
-  EXPECT_TRUE(link.belief.current);
+  EXPECT_EQ(link.found.share, 1.0);
+  EXPECT_TRUE(link.found.current);
 }
 
 TEST(LinkFreshness, WhoHearsNothingSaysNothingAndIsBelievedWhenTheHostHasAnswered) {
@@ -156,41 +156,41 @@ TEST(LinkFreshness, WhoHearsNothingSaysNothingAndIsBelievedWhenTheHostHasAnswere
   link.run(500);
   link.down = false;
   link.run(90);
-  EXPECT_TRUE(link.hearing.speaks());
+  EXPECT_TRUE(link.rule.speaks());
   link.run(30);
-  EXPECT_FALSE(link.hearing.speaks());
+  EXPECT_FALSE(link.rule.speaks());
   link.down = true;
   link.run(100);
-  EXPECT_FALSE(link.hearing.speaks()) << "a host may have missed so short a silence";
+  EXPECT_FALSE(link.rule.speaks()) << "a host may have missed so short a silence";
   link.run(40);
-  EXPECT_TRUE(link.hearing.speaks());
+  EXPECT_TRUE(link.rule.speaks());
   link.run(100);
-  EXPECT_EQ(link.belief.share, 1.0);
+  EXPECT_EQ(link.found.share, 1.0);
   // The other way round: back, but not answered yet.
   link.down = false;
   link.run(500);
   link.down = true;
   link.up = false;
   link.run(300);
-  EXPECT_TRUE(link.hearing.speaks());
-  EXPECT_EQ(link.belief.share, 0.0) << "the host has not taken hold, so nobody feels anything";
+  EXPECT_TRUE(link.rule.speaks());
+  EXPECT_EQ(link.found.share, 0.0) << "the host has not taken hold, so nobody feels anything";
   link.up = true;
   link.run(50);
-  EXPECT_EQ(link.belief.share, 1.0);
+  EXPECT_EQ(link.found.share, 1.0);
 }
 
 TEST(LinkFreshness, TellsOfTheStateThatEndsAGap) {
   Link link;
   link.run(500);
-  EXPECT_FALSE(link.belief.resumed);
+  EXPECT_FALSE(link.found.resumed);
   link.down = false;
   link.run(50);
-  EXPECT_FALSE(link.belief.resumed);
+  EXPECT_FALSE(link.found.resumed);
   link.down = true;
   link.run(1);
-  EXPECT_TRUE(link.belief.resumed) << "the body is elsewhere by now, whether our poses are followed or not";
+  EXPECT_TRUE(link.found.resumed) << "the body is elsewhere by now, whether our poses are followed or not";
   link.run(1);
-  EXPECT_FALSE(link.belief.resumed);
+  EXPECT_FALSE(link.found.resumed);
 }
 
 TEST(LinkFreshness, InOneProcessNoPoseIsLost) {
@@ -200,19 +200,19 @@ TEST(LinkFreshness, InOneProcessNoPoseIsLost) {
   for (int i = 0; i < 1000; ++i) {
     link.ms += 1;
     link.message.stamp_ns = link.now();
-    link.belief = link.hearing.hear(link.message, true, link.now());
+    link.found = link.rule.update(link.message, true, link.now());
   }
-  EXPECT_EQ(link.belief.share, 1.0);
+  EXPECT_EQ(link.found.share, 1.0);
 }
 
 TEST(LinkFreshness, AStampFromTheFutureKeepsNoForceAlive) {
   Link link;
   link.message.heard_pose_ns = kPoseNotTold;
   link.message.stamp_ns = link.now() + to_nanoseconds(3600.0);
-  link.belief = link.hearing.hear(link.message, true, link.now());
-  EXPECT_EQ(link.belief.share, 1.0);
+  link.found = link.rule.update(link.message, true, link.now());
+  EXPECT_EQ(link.found.share, 1.0);
   link.ms += 400;
-  EXPECT_EQ(link.hearing.hear(link.message, false, link.now()).share, 0.0);
+  EXPECT_EQ(link.rule.update(link.message, false, link.now()).share, 0.0);
 }
 
 }  // namespace

@@ -235,7 +235,7 @@ TEST(NoAllocation, ATickOfAReplicaWithSwingingFluidThatIsRecordedAt1kHz) {
     ServoSample sample;
     while (servo.samples().pop(sample)) samples += 1;
     const ThreadCalls begin = thread_calls();
-    held.hear(word, fresh, ns(ms));
+    held.update(word, fresh, ns(ms));
     held.sent(0, word.bodies.grips[0].on_hand, true, arm.next.pose, arm.next.twist, 0.0, false);
     held.advance(ns(ms + 1), 1.0, 0.001);
     const ThreadCalls now = thread_calls() - begin;
