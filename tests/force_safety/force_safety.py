@@ -25,7 +25,7 @@ import tempfile
 import time
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
-from trials import LENGTH, MOTIONS, kinds  # noqa: E402
+from trials import BRACED, LENGTH, MOTIONS, SPRINGS, kinds  # noqa: E402
 
 GRIPS = ("left_hand", "right_hand")
 STARTS = ((-0.143, 0.355, 0.0), (0.143, 0.355, 0.0))  # of the shipped bucket's grips
@@ -178,7 +178,7 @@ def bounds(kind, control, alone):
         found = {name: max(found[name], kind.alone * alone[name]) for name in LEAST}
     found["change_n"] = max(found["change_n"], SLEW)
     found["rise_m"] += kind.gives
-    found["way_m"] += kind.sags + kind.gives
+    found["way_m"] += kind.sags + kind.gives + (SPRINGS if BRACED in kind.people else 0.0)
     found["speed_m_s"] += math.sqrt(2.0 * 9.81 * 0.25 * kind.gives)
     found["speed_m_s"] += math.sqrt(2.0 * 9.81 * 0.25 * kind.sags)  # half of the way down and a spring's share of that
     found["spin_rad_s"] += 5.0 * kind.sags  # the turning spring is softened, too

@@ -104,6 +104,8 @@ ALONE, PAIR = ("script",), ("script", "script")
 BRACED = "operator:wrist=40"  # N·m/rad: a loose wrist is bent by 50° here, and springs back whenever a force goes
 ARM, ARMS = (BRACED,), (BRACED, BRACED)
 CARRIES_ALL = 1.1
+# m: such an arm springs up by as much when a gap takes the weight away (800 N/m), and the bucket with it.
+SPRINGS = 0.04
 # Two arms lean against each other, and any split of the weight between them is a rest: each has a lone arm's bound.
 ANY_SPLIT = 1.5
 
