@@ -3,6 +3,7 @@
 // MODEL: paper, corrected or incompressible; the default one unless named. At rest; or with
 // `drag` turning, without viscosity, at 50 Pa·s by explicit steps and at 50 Pa·s solved.
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
@@ -66,13 +67,11 @@ bool measure(Backend backend, ParticleModel model, Drag drag, double particles, 
   }
   World& world = made.value();
   for (int i = 0; i < length.warm_up; ++i) world.step({});
-  std::vector<double> sort, density, force;
+  std::array<std::vector<double>, kPassCount> times;
   const auto begin = std::chrono::steady_clock::now();
   for (int i = 0; i < length.steps; ++i) {
     world.step({});
-    sort.push_back(world.times().sort);
-    density.push_back(world.times().density);
-    force.push_back(world.times().force);
+    for (std::size_t p = 0; p < kPassCount; ++p) times[p].push_back(world.times().pass[p]);
   }
   // What the last step has still under way is as much as the warm-up had.
   const double seconds =
@@ -80,14 +79,14 @@ bool measure(Backend backend, ParticleModel model, Drag drag, double particles, 
   const Diagnostics after = world.diagnostics();
   const double count = static_cast<double>(world.fluid_count());
   // Solves take as many iterations as they need: what is typical says little there.
-  const auto of = [&](const std::vector<double>& times) {
-    const bool solved = drag != Drag::kResting || model == ParticleModel::kIncompressible;
-    return solved ? mean(times) : median(times);
-  };
-  std::printf("\"%s\",%s,\"%s\",%zu,%zu,%.3f,%.4f,%.4f,%.4f,%.4f,%.3f,%.1f,%llu\n", world.backend().c_str(),
-              name(model), name(drag), world.fluid_count(), world.boundary_count(),
-              1e3 * world.plan().time_step, 1e3 * seconds, 1e3 * of(sort), 1e3 * of(density), 1e3 * of(force),
-              1e9 * seconds / count, 1.0 / seconds, static_cast<unsigned long long>(after.retired));
+  const bool solved = drag != Drag::kResting || model == ParticleModel::kIncompressible;
+  std::printf("\"%s\",%s,\"%s\",%zu,%zu,%.3f,%.4f,%.3f,%.1f,%llu", world.backend().c_str(), name(model),
+              name(drag), world.fluid_count(), world.boundary_count(), 1e3 * world.plan().time_step,
+              1e3 * seconds, 1e9 * seconds / count, 1.0 / seconds,
+              static_cast<unsigned long long>(after.retired));
+  for (const std::vector<double>& pass : times)
+    std::printf(",%.4f", 1e3 * (solved ? mean(pass) : median(pass)));
+  std::puts("");
   std::fflush(stdout);
   return true;
 }
@@ -118,10 +117,11 @@ int main(int argc, char** argv) {
     }
   }
   if (sizes.empty()) sizes = {32768, 131072, 524288, 1048576, 2097152};
-  std::puts(
-      "backend,model,drag,fluid_particles,body_particles,time_step_ms,step_ms,sort_ms,density_ms,force_ms,ns_"
-      "per_"
-      "particle,steps_per_s,retired");
+  std::printf(
+      "backend,model,drag,fluid_particles,body_particles,time_step_ms,step_ms,ns_per_particle,steps_per_s,"
+      "retired");
+  for (std::size_t p = 0; p < kPassCount; ++p) std::printf(",%s_ms", slosh::name(static_cast<PassId>(p)));
+  std::puts("");
   const Length length = backend == Backend::kCuda ? Length{100, 200} : Length{5, 20};
   const std::vector<Drag> ways =
       drag ? std::vector{Drag::kNone, Drag::kStepped, Drag::kSolved} : std::vector{Drag::kResting};
