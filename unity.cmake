@@ -1,6 +1,5 @@
 # Unity builds: each target's files are compiled together by folder, so that what they include is read once.
-# sim is left out: what the compiler inlines and fuses there would change with its neighbours, and hashes with it;
-# scenes/make is: each of its scenes names its sizes alike.
+# sim is left out: what the compiler inlines and fuses there would change with its neighbours, and hashes with it.
 #
 # Names of anonymous namespaces must differ within a folder's batch; a clash is an error of the compiler, never a
 # wrong program.
@@ -18,7 +17,7 @@ function(slosh_unity target)
     get_filename_component(source "${source}" ABSOLUTE BASE_DIR "${folder}")
     get_filename_component(place "${source}" DIRECTORY)
     file(RELATIVE_PATH place "${PROJECT_SOURCE_DIR}" "${place}")
-    if(NOT source MATCHES "\\.cpp$" OR source MATCHES "^${PROJECT_BINARY_DIR}/" OR place MATCHES "^(sim|scenes/make)(/|$)")
+    if(NOT source MATCHES "\\.cpp$" OR source MATCHES "^${PROJECT_BINARY_DIR}/" OR place MATCHES "^sim(/|$)")
       continue()
     endif()
     string(MAKE_C_IDENTIFIER "${place}" place)

@@ -12,16 +12,16 @@ namespace {
 constexpr double kBottomRadius = 0.080;  ///< inner, at the floor
 constexpr double kRimRadius = 0.095;     ///< inner, at the rim
 constexpr double kInnerDepth = 0.160;
-constexpr double kFluidDepth = 0.105;
-constexpr double kHeld = 0.30;  ///< of the bucket's underside over the table
+constexpr double kBucketFluidDepth = 0.105;
+constexpr double kBucketHeld = 0.30;  ///< of the bucket's underside over the table
 // Below the middle of bucket and water: a hand that is lowered then gets the greater load, as with any vessel
 // that is carried by its sides; handles at the rim would let it swing like a pendulum towards the upper hand.
 constexpr double kHandleHeight = 0.055;
-constexpr double kHandleEnd = 0.088;     ///< where the loop enters the wall: nowhere does it come out inside
-constexpr double kHandleReach = 0.025;   ///< straight part
-constexpr double kHandleRadius = 0.030;  ///< of the loop's bend
+constexpr double kHandleEnd = 0.088;    ///< where the loop enters the wall: nowhere does it come out inside
+constexpr double kHandleReach = 0.025;  ///< straight part
+constexpr double kBucketHandleRadius = 0.030;  ///< of the loop's bend
 constexpr double kHandleThickness = 0.015;
-constexpr double kDuration = 10.0;
+constexpr double kBucketDuration = 10.0;
 
 double inner_radius(double above_floor) {
   return kBottomRadius + (kRimRadius - kBottomRadius) * above_floor / kInnerDepth;
@@ -31,13 +31,14 @@ Solid handle(double side) {
   std::vector<glm::dvec3> path;
   const double bend = kHandleEnd + kHandleReach;
   for (int i = 0; i < 3; ++i)
-    path.emplace_back(kHandleEnd + kHandleReach * i / 3.0, kHandleHeight, -kHandleRadius);
+    path.emplace_back(kHandleEnd + kHandleReach * i / 3.0, kHandleHeight, -kBucketHandleRadius);
   for (int i = 0; i <= 16; ++i) {
     const double angle = glm::pi<double>() * (i / 16.0 - 0.5);
-    path.emplace_back(bend + kHandleRadius * std::cos(angle), kHandleHeight, kHandleRadius * std::sin(angle));
+    path.emplace_back(bend + kBucketHandleRadius * std::cos(angle), kHandleHeight,
+                      kBucketHandleRadius * std::sin(angle));
   }
   for (int i = 2; i >= 0; --i)
-    path.emplace_back(kHandleEnd + kHandleReach * i / 3.0, kHandleHeight, kHandleRadius);
+    path.emplace_back(kHandleEnd + kHandleReach * i / 3.0, kHandleHeight, kBucketHandleRadius);
   for (glm::dvec3& p : path) p.x *= side;
   return tube(path, 0.5 * kHandleThickness, 24);
 }
@@ -58,8 +59,8 @@ Solid bucket() {
 Solid fluid() {
   return lathe({{0.0, kWall},
                 {kBottomRadius, kWall},
-                {inner_radius(kFluidDepth), kWall + kFluidDepth},
-                {0.0, kWall + kFluidDepth}},
+                {inner_radius(kBucketFluidDepth), kWall + kBucketFluidDepth},
+                {0.0, kWall + kBucketFluidDepth}},
                72);
 }
 
@@ -72,8 +73,8 @@ double tilt(double time) {
 }
 
 Pose bucket_pose(double time) {
-  const glm::dvec3 pivot(0.0, kHeld + 0.5 * kInnerDepth, 0.0);
-  const Pose rest{{0.0, kHeld, 0.0}, {1.0, 0.0, 0.0, 0.0}};
+  const glm::dvec3 pivot(0.0, kBucketHeld + 0.5 * kInnerDepth, 0.0);
+  const Pose rest{{0.0, kBucketHeld, 0.0}, {1.0, 0.0, 0.0, 0.0}};
   const glm::dquat turn = glm::angleAxis(tilt(time), glm::dvec3(0.0, 0.0, 1.0));
   return {pivot + turn * (rest.position - pivot), turn};
 }
@@ -84,7 +85,7 @@ SceneWriter make_bucket() {
   SceneWriter writer({{"title", "Two hands hold one bucket, tilt it and spill (6.4.4)"},
                       {"spacing_min_m", 0.006},
                       {"spacing_max_m", 0.012},
-                      {"duration_s", kDuration},
+                      {"duration_s", kBucketDuration},
                       {"settle_s", kSettle},
                       {"domain_min_m", list({-0.65, -0.20, -0.45})},
                       {"domain_max_m", list({0.65, 0.85, 0.45})}});
@@ -104,8 +105,8 @@ SceneWriter make_bucket() {
                    {"scattering", 0.35}});
   for (const bool right : {false, true}) {
     const std::string side = right ? "right" : "left";
-    const glm::dvec3 at((right ? 1.0 : -1.0) * (kHandleEnd + kHandleReach + kHandleRadius), kHandleHeight,
-                        0.0);
+    const glm::dvec3 at((right ? 1.0 : -1.0) * (kHandleEnd + kHandleReach + kBucketHandleRadius),
+                        kHandleHeight, 0.0);
     const Pose grip{at, {1.0, 0.0, 0.0, 0.0}};
     writer.add_node(side + "_hand", -1, grip,
                     {{"slosh", "grip"},
@@ -116,7 +117,8 @@ SceneWriter make_bucket() {
                      {"device", right ? 1 : 0}},
                     node);
     writer.add_hand(
-        side + "_motion", side + "_hand", [=](double t) { return compose(bucket_pose(t), grip); }, kDuration);
+        side + "_motion", side + "_hand", [=](double t) { return compose(bucket_pose(t), grip); },
+        kBucketDuration);
   }
   writer.add_camera({0.36, 0.92, 0.84}, {-0.02, 0.26, 0.0}, 36.0);
   return writer;

@@ -10,15 +10,15 @@ namespace {
 
 const glm::dvec3 kInner(1.0, 0.35, 1.0);
 constexpr double kPoolWall = 0.060;
-constexpr double kFluidDepth = 0.25;
+constexpr double kPoolFluidDepth = 0.25;
 constexpr double kBallRadius = 0.080;
 constexpr double kCircle = 0.25;  ///< radius of the ball's way
-constexpr double kDuration = 12.0;
-constexpr Turn kTurn{1.0, 1.0, 8.6, glm::two_pi<double>() / 4.8};  // two rounds in all
+constexpr double kPoolDuration = 12.0;
+constexpr Turn kPoolTurn{1.0, 1.0, 8.6, glm::two_pi<double>() / 4.8};  // two rounds in all
 
 Pose ball_pose(double time) {
-  const double angle = turned(kTurn, time);
-  return {{kCircle * std::cos(angle), kPoolWall + kFluidDepth, -kCircle * std::sin(angle)},
+  const double angle = turned(kPoolTurn, time);
+  return {{kCircle * std::cos(angle), kPoolWall + kPoolFluidDepth, -kCircle * std::sin(angle)},
           {1.0, 0.0, 0.0, 0.0}};
 }
 
@@ -28,7 +28,7 @@ SceneWriter make_pool() {
   SceneWriter writer({{"title", "A ball stirs a pool of 1 m x 1 m (6.2)"},
                       {"spacing_min_m", 0.012},
                       {"spacing_max_m", 0.05},
-                      {"duration_s", kDuration},
+                      {"duration_s", kPoolDuration},
                       {"settle_s", kSettle},
                       {"domain_min_m", list({-0.85, -0.15, -0.85})},
                       {"domain_max_m", list({0.85, 1.0, 0.85})}});
@@ -38,7 +38,7 @@ SceneWriter make_pool() {
   writer.add_node("pool", writer.add_mesh("pool", tank(kInner, kPoolWall), tiles), {},
                   {{"slosh", "body"}, {"motion", "fixed"}, {"viscosity_pa_s", 0.0}});
   const Solid fluid = box({-0.5 * kInner.x, kPoolWall, -0.5 * kInner.z},
-                          {0.5 * kInner.x, kPoolWall + kFluidDepth, 0.5 * kInner.z});
+                          {0.5 * kInner.x, kPoolWall + kPoolFluidDepth, 0.5 * kInner.z});
   writer.add_node("water", writer.add_mesh("water", fluid, look), {},
                   {{"slosh", "fluid"},
                    {"density_kg_m3", 1000.0},
@@ -56,7 +56,7 @@ SceneWriter make_pool() {
                    {"rotational_damping_nm_s_rad", 0.6},
                    {"device", 0}},
                   node);
-  writer.add_hand("ball_motion", "ball_hand", ball_pose, kDuration);
+  writer.add_hand("ball_motion", "ball_hand", ball_pose, kPoolDuration);
   writer.add_camera({0.9, 1.35, 1.85}, {0.0, 0.15, 0.0}, 36.0);
   return writer;
 }

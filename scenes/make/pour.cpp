@@ -18,7 +18,7 @@ constexpr double kPanHeld = 0.08;
 constexpr double kBarRadius = 0.008;
 /// Where the lip stays while the bowl tilts: the stream lands a little beyond, in the pan's middle.
 const glm::dvec3 kLip(-0.03, kBowlHeld + kBowlRim, 0.0);
-constexpr double kDuration = 10.0;
+constexpr double kPourDuration = 10.0;
 
 std::vector<glm::dvec2> arc(double radius, double from_deg, double to_deg, int steps) {
   std::vector<glm::dvec2> line;
@@ -75,7 +75,7 @@ void add_held(SceneWriter& writer, const std::string& name, int node, const Pose
                    {"device", device}},
                   node);
   writer.add_hand(
-      name + "_motion", name, [=](double t) { return compose(body_pose(t), grip); }, kDuration);
+      name + "_motion", name, [=](double t) { return compose(body_pose(t), grip); }, kPourDuration);
 }
 
 }  // namespace
@@ -84,7 +84,7 @@ SceneWriter make_pour() {
   SceneWriter writer({{"title", "Batter is poured from a bowl into a pan (6.4.2)"},
                       {"spacing_min_m", 0.006},
                       {"spacing_max_m", 0.012},
-                      {"duration_s", kDuration},
+                      {"duration_s", kPourDuration},
                       {"settle_s", kSettle},
                       {"domain_min_m", list({-0.45, -0.15, -0.35})},
                       {"domain_max_m", list({0.50, 0.75, 0.35})}});

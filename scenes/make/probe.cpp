@@ -5,12 +5,12 @@
 namespace slosh::make {
 namespace {
 
-const glm::dvec3 kInner(0.160, 0.100, 0.120);
-constexpr double kFluidDepth = 0.070;
-constexpr double kAbove = kWall + kFluidDepth + 0.035;
-constexpr double kUnder = kWall + 0.5 * kFluidDepth;
+const glm::dvec3 kProbeInner(0.160, 0.100, 0.120);
+constexpr double kProbeFluidDepth = 0.070;
+constexpr double kAbove = kWall + kProbeFluidDepth + 0.035;
+constexpr double kUnder = kWall + 0.5 * kProbeFluidDepth;
 constexpr double kSwipe = 0.045;
-constexpr double kDuration = 8.0;
+constexpr double kProbeDuration = 8.0;
 
 Pose probe_pose(double time) {
   const double y = follow({{1.0, kAbove}, {2.2, kUnder}, {6.4, kUnder}, {7.4, kAbove}}, time);
@@ -25,7 +25,7 @@ SceneWriter make_probe() {
   SceneWriter writer({{"title", "One particle feels a fluid on a 3-DoF device (section 3)"},
                       {"spacing_min_m", 0.005},
                       {"spacing_max_m", 0.012},
-                      {"duration_s", kDuration},
+                      {"duration_s", kProbeDuration},
                       {"settle_s", kSettle},
                       {"domain_min_m", list({-0.25, -0.15, -0.22})},
                       {"domain_max_m", list({0.25, 0.35, 0.22})}});
@@ -35,10 +35,10 @@ SceneWriter make_probe() {
   const int clear = writer.add_material("clear plastic", {{0.75, 0.82, 0.85, 0.30}, 0.0, 0.15});
   const int red = writer.add_material("red", {{0.80, 0.08, 0.05, 1.0}, 0.0, 0.4});
   const int look = writer.add_material("water", {{0.10, 0.35, 0.55, 0.5}, 0.0, 0.1});
-  writer.add_node("tank", writer.add_mesh("tank", tank(kInner, kWall), clear), {},
+  writer.add_node("tank", writer.add_mesh("tank", tank(kProbeInner, kWall), clear), {},
                   {{"slosh", "body"}, {"motion", "fixed"}, {"viscosity_pa_s", 0.0}});
-  const Solid fluid =
-      box({-0.5 * kInner.x, kWall, -0.5 * kInner.z}, {0.5 * kInner.x, kWall + kFluidDepth, 0.5 * kInner.z});
+  const Solid fluid = box({-0.5 * kProbeInner.x, kWall, -0.5 * kProbeInner.z},
+                          {0.5 * kProbeInner.x, kWall + kProbeFluidDepth, 0.5 * kProbeInner.z});
   writer.add_node("water", writer.add_mesh("water", fluid, look), {},
                   {{"slosh", "fluid"},
                    {"density_kg_m3", 1000.0},
@@ -55,7 +55,7 @@ SceneWriter make_probe() {
                    {"rotational_damping_nm_s_rad", 0.0},
                    {"device", 0}},
                   node);
-  writer.add_hand("probe_motion", "probe_hand", probe_pose, kDuration);
+  writer.add_hand("probe_motion", "probe_hand", probe_pose, kProbeDuration);
   writer.add_camera({0.22, 0.34, 0.46}, {0.0, 0.06, 0.0}, 34.0);
   return writer;
 }

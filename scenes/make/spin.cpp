@@ -9,12 +9,12 @@ namespace {
 
 constexpr double kRadius = 0.045;  ///< inner
 constexpr double kHeight = 0.100;  ///< inner
-constexpr double kFluidDepth = 0.090;
+constexpr double kSpinFluidDepth = 0.090;
 constexpr double kApart = 0.25;
-constexpr double kHeld = 0.03;  ///< clear of the table, which is only looked at: nothing rubs
+constexpr double kSpinHeld = 0.03;  ///< clear of the table, which is only looked at: nothing rubs
 constexpr int kViscosities[] = {2, 10, 20, 40};  // Pa·s
-constexpr double kDuration = 7.0;
-constexpr Turn kTurn{1.5, 0.15, 3.0, glm::two_pi<double>()};
+constexpr double kSpinDuration = 7.0;
+constexpr Turn kSpinTurn{1.5, 0.15, 3.0, glm::two_pi<double>()};
 
 Solid glass() {
   const double outer = kRadius + kWall;
@@ -26,8 +26,9 @@ Solid glass() {
 }
 
 Solid syrup() {
-  return lathe({{0.0, kWall}, {kRadius, kWall}, {kRadius, kWall + kFluidDepth}, {0.0, kWall + kFluidDepth}},
-               64);
+  return lathe(
+      {{0.0, kWall}, {kRadius, kWall}, {kRadius, kWall + kSpinFluidDepth}, {0.0, kWall + kSpinFluidDepth}},
+      64);
 }
 
 }  // namespace
@@ -43,7 +44,7 @@ SceneWriter make_spin() {
   SceneWriter writer({{"title", "Four glasses with walls of 2, 10, 20 and 40 Pa·s spin up and stop (6.4.3)"},
                       {"spacing_min_m", 0.006},
                       {"spacing_max_m", 0.012},
-                      {"duration_s", kDuration},
+                      {"duration_s", kSpinDuration},
                       {"settle_s", kSettle},
                       {"fluids", fluids},
                       {"domain_min_m", list({-0.65, -0.15, -0.25})},
@@ -57,7 +58,7 @@ SceneWriter make_spin() {
   const int syrup_mesh = writer.add_mesh("syrup", syrup(), look);
   for (int i = 0; i < 4; ++i) {
     const std::string number = std::to_string(kViscosities[i]);
-    const glm::dvec3 at((i - 1.5) * kApart, kHeld, 0.0);
+    const glm::dvec3 at((i - 1.5) * kApart, kSpinHeld, 0.0);
     const Pose start{at, {1.0, 0.0, 0.0, 0.0}};
     const int node = writer.add_node("glass_" + number, glass_mesh, start,
                                      {{"slosh", "body"},
@@ -74,10 +75,10 @@ SceneWriter make_spin() {
                      {"device", i}},
                     node);
     const auto pose_at = [=](double t) {
-      return Pose{at, glm::angleAxis(turned(kTurn, t), glm::dvec3(0.0, 1.0, 0.0))};
+      return Pose{at, glm::angleAxis(turned(kSpinTurn, t), glm::dvec3(0.0, 1.0, 0.0))};
     };
     // The start takes 0.15 s: keys close enough to keep its shape.
-    writer.add_hand("motion_" + number, "hand_" + number, pose_at, kDuration, 120.0);
+    writer.add_hand("motion_" + number, "hand_" + number, pose_at, kSpinDuration, 120.0);
   }
   writer.add_camera({-0.06, 0.62, 0.98}, {-0.06, 0.06, 0.0}, 38.0);
   return writer;

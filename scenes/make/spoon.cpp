@@ -9,18 +9,18 @@
 namespace slosh::make {
 namespace {
 
-const glm::dvec3 kInner(0.300, 0.110, 0.140);
-constexpr double kFluidDepth = 0.075;
+const glm::dvec3 kSpoonInner(0.300, 0.110, 0.140);
+constexpr double kSpoonFluidDepth = 0.075;
 constexpr double kSpoonLift = 0.016;  ///< of the bowl over the tank's floor
 constexpr double kBowlLength = 0.050;
 constexpr double kBowlWidth = 0.040;
 constexpr double kBowlBack = 0.016;  ///< how far the round back stands out
 constexpr double kBowlDent = 0.003;  ///< how deep the front is
-constexpr double kHandleRadius = 0.006;
+constexpr double kSpoonHandleRadius = 0.006;
 constexpr double kHandleLength = 0.220;
 constexpr double kGripHeight = 0.245;  ///< over the bowl's tip
 constexpr double kStroke = 0.080;
-constexpr double kDuration = 10.0;
+constexpr double kSpoonDuration = 10.0;
 
 /// The bowl as a lens of radius 1 sideways: full behind (−y), a little hollow in front. A superellipse of
 /// power 3 keeps it thick up to the edge.
@@ -44,7 +44,7 @@ Solid spoon() {
   place = place * glm::dmat4(glm::dmat3(glm::dvec3(0.0, 0.5 * kBowlLength, 0.0), glm::dvec3(1.0, 0.0, 0.0),
                                         glm::dvec3(0.0, 0.0, -0.5 * kBowlWidth)));
   const double foot = kBowlLength - 0.004;
-  const Solid handle = capsule(kHandleRadius, foot, foot + kHandleLength, 10, 24);
+  const Solid handle = capsule(kSpoonHandleRadius, foot, foot + kHandleLength, 10, 24);
   return merged(transformed(lens(), place), handle);
 }
 
@@ -67,7 +67,7 @@ SceneWriter make_spoon() {
   SceneWriter writer({{"title", "A spoon stirs a tank forward and backward (6.4.1)"},
                       {"spacing_min_m", 0.006},
                       {"spacing_max_m", 0.012},
-                      {"duration_s", kDuration},
+                      {"duration_s", kSpoonDuration},
                       {"settle_s", kSettle},
                       {"domain_min_m", list({-0.40, -0.15, -0.30})},
                       {"domain_max_m", list({0.40, 0.55, 0.30})}});
@@ -75,10 +75,10 @@ SceneWriter make_spoon() {
   const int clear = writer.add_material("clear plastic", {{0.75, 0.82, 0.85, 0.30}, 0.0, 0.15});
   const int steel = writer.add_material("steel", {{0.62, 0.63, 0.65, 1.0}, 1.0, 0.30});
   const int look = writer.add_material("juice", {{0.80, 0.30, 0.05, 0.6}, 0.0, 0.1});
-  writer.add_node("tank", writer.add_mesh("tank", tank(kInner, kWall), clear), {},
+  writer.add_node("tank", writer.add_mesh("tank", tank(kSpoonInner, kWall), clear), {},
                   {{"slosh", "body"}, {"motion", "fixed"}, {"viscosity_pa_s", 0.0}});
-  const Solid fluid =
-      box({-0.5 * kInner.x, kWall, -0.5 * kInner.z}, {0.5 * kInner.x, kWall + kFluidDepth, 0.5 * kInner.z});
+  const Solid fluid = box({-0.5 * kSpoonInner.x, kWall, -0.5 * kSpoonInner.z},
+                          {0.5 * kSpoonInner.x, kWall + kSpoonFluidDepth, 0.5 * kSpoonInner.z});
   writer.add_node("juice", writer.add_mesh("juice", fluid, look), {},
                   {{"slosh", "fluid"},
                    {"density_kg_m3", 1000.0},
@@ -100,7 +100,7 @@ SceneWriter make_spoon() {
                    {"device", 0}},
                   node);
   writer.add_hand(
-      "spoon_motion", "spoon_hand", [=](double t) { return compose(spoon_pose(t), grip); }, kDuration);
+      "spoon_motion", "spoon_hand", [=](double t) { return compose(spoon_pose(t), grip); }, kSpoonDuration);
   writer.add_camera({0.30, 0.42, 0.58}, {0.0, 0.11, 0.0}, 36.0);
   return writer;
 }

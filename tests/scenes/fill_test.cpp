@@ -12,10 +12,9 @@ namespace {
 
 using test::TempFolder;
 
-Scene load(const make::SceneWriter& writer) {
+Scene load(make::SceneWriter writer) {
   const TempFolder folder;
-  make::SceneWriter copy = writer;
-  EXPECT_TRUE(copy.write(folder / "scene.gltf"));
+  EXPECT_TRUE(writer.write(folder / "scene.gltf"));
   const auto scene = load_scene(folder / "scene.gltf");
   EXPECT_TRUE(scene) << scene.error().text();
   return scene ? scene.value() : Scene{};
@@ -25,7 +24,7 @@ TEST(Filling, FreeBoxHoldsVolumeOverSpacingCubed) {
   make::SceneWriter writer(nlohmann::json{{"spacing_max_m", 0.01}});
   writer.add_node("water", writer.add_mesh("water", make::box({0, 0, 0}, {0.2, 0.1, 0.15}), -1),
                   {{1, 2, 3}, {1, 0, 0, 0}}, {{"slosh", "fluid"}, {"velocity_m_s", make::list({0.5, 0, 0})}});
-  const Scene scene = load(writer);
+  const Scene scene = load(std::move(writer));
   const auto sampled = sample_scene(scene, 0.01);
   ASSERT_TRUE(sampled) << sampled.error().text();
   EXPECT_EQ(sampled.value().fluid_positions.size(), 20u * 10u * 15u);
@@ -41,7 +40,7 @@ TEST(Filling, FreeBoxHoldsVolumeOverSpacingCubed) {
 TEST(Filling, BallHoldsItsVolume) {
   make::SceneWriter writer(nlohmann::json::object());
   writer.add_node("water", writer.add_mesh("water", make::sphere(0.1, 48, 96), -1), {}, {{"slosh", "fluid"}});
-  const auto sampled = sample_scene(load(writer), 0.008);
+  const auto sampled = sample_scene(load(std::move(writer)), 0.008);
   ASSERT_TRUE(sampled) << sampled.error().text();
   const double wanted = 4.0 / 3.0 * 3.14159265 * 1e-3 / (0.008 * 0.008 * 0.008);
   EXPECT_NEAR(static_cast<double>(sampled.value().fluid_positions.size()), wanted, 0.02 * wanted);

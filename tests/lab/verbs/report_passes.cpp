@@ -9,6 +9,7 @@
 #include "peer/output/summary.h"
 #include "scenes/load.h"
 #include "sim/math/format.h"
+#include "sim/passes/pass.h"
 #include "tests/lab/report/passes.h"
 #include "tests/lab/verbs/report.h"
 
@@ -20,6 +21,33 @@ constexpr const char* kSharesTable = "shares.csv";
 
 std::string agrees(const report::PassRow& row) {
   return row.same_bits ? "bitwise identical" : format("%.2g mm apart", 1e3 * row.off);
+}
+
+/// On a GPU its passes go on while the processor has its own, so that each have a sum of their own.
+void print_shares(const report::PassTable& found, Backend backend) {
+  const bool gpu = backend == Backend::kCuda;
+  std::printf("\n%-32s %10s %10s\n", "within a step as planned", "ms", "share");
+  const auto line = [](const char* what, double ms, double share, const char* note) {
+    std::printf("%-32s %10.4f %9.1f%%%s\n", what, ms, 100.0 * share, note);
+  };
+  const auto list = [&](const char* all, auto&& belongs) {
+    double ms = 0.0, share = 0.0;
+    for (const report::PassShare& each : found.shares) {
+      if (!belongs(each.pass)) continue;
+      line(name(each.pass), each.ms, each.share,
+           gpu && each.pass == PassId::kReadWrenches ? "   waits for the GPU" : "");
+      ms += each.ms;
+      share += each.share;
+    }
+    line(all, ms, share, "");
+  };
+  if (gpu) {
+    list("all on the GPU", [](PassId id) { return on_engine(id); });
+    list("all on the processor", [](PassId id) { return !on_engine(id); });
+  } else {
+    list("all passes", [](PassId) { return true; });
+  }
+  std::printf("\n");
 }
 
 }  // namespace
@@ -70,16 +98,9 @@ int report_passes(const ReportOptions& options, const std::string& scene_name, d
       csv += format("%s,%s,%.5g,%.4f,%.0f,%d,%.4g\n", backend_name(backend), row.what.c_str(), row.step_ms,
                     row.slower, row.bytes_a_particle, row.same_bits ? 1 : 0, row.off);
     }
-    std::printf("\n%-32s %10s %10s\n", "within a step as planned", "ms", "share");
-    double rest = 1.0;
-    for (const report::PassShare& each : found.shares) {
-      std::printf("%-32s %10.4f %9.1f%%\n", name(each.pass), each.ms, 100.0 * each.share);
+    print_shares(found, backend);
+    for (const report::PassShare& each : found.shares)
       shares += format("%s,%s,%.5g,%.4f\n", backend_name(backend), name(each.pass), each.ms, each.share);
-      rest -= each.share;
-    }
-    std::printf("%-32s %10.4f %9.1f%%\n\n",
-                backend == Backend::kCuda ? "beside them, less what overlaps" : "beside them",
-                rest * found.rows.front().step_ms, 100.0 * rest);
   }
   if (options.out.empty()) return kExitOk;
   for (const auto& [file, text] : {std::pair{kPassesTable, csv}, std::pair{kSharesTable, shares}}) {
