@@ -62,6 +62,27 @@ double farthest(const Snapshot& a, const Snapshot& b) {
   return off;
 }
 
+/// Of steps in a row: on a GPU what another world's step left under way would be in the passes' times.
+std::vector<PassShare> shares_of(World& world, const std::vector<HandleInput>& hands,
+                                 const PassOptions& options, double& step_ms) {
+  std::vector<double> steps;
+  std::array<std::vector<double>, kPassCount> parts;
+  for (int i = 0; i < kWarmUp + options.steps; ++i) {
+    if (options.stopped && options.stopped()) throw Stopped();
+    world.step(hands);
+    if (i < kWarmUp) continue;
+    steps.push_back(1e3 * world.times().total);
+    for (std::size_t p = 0; p < kPassCount; ++p) parts[p].push_back(1e3 * world.times().pass[p]);
+  }
+  step_ms = median(steps);
+  std::vector<PassShare> shares;
+  for (std::size_t p = 0; p < kPassCount; ++p) {
+    const double ms = median(parts[p]);
+    if (ms > 0.0) shares.push_back({static_cast<PassId>(p), ms, ms / step_ms});
+  }
+  return shares;
+}
+
 }  // namespace
 
 PassTable measure_passes(const Scene& scene, const SampledScene& sampled, const PassOptions& options) {
@@ -97,7 +118,6 @@ PassTable measure_passes(const Scene& scene, const SampledScene& sampled, const 
   }
   // In turns, so that what else the machine does falls on all alike.
   Snapshot first, other;
-  std::array<std::vector<double>, kPassCount> parts;  // ms, of each step as planned
   for (int round = 0; round < kWarmUp + options.steps; ++round) {
     for (Variant& each : variants) {
       if (options.stopped && options.stopped()) throw Stopped();
@@ -105,10 +125,7 @@ PassTable measure_passes(const Scene& scene, const SampledScene& sampled, const 
       each.world.step(hands);
       if (each.after) each.after(each.world);
       const std::chrono::duration<double, std::milli> took = std::chrono::steady_clock::now() - before;
-      if (round < kWarmUp) continue;
-      each.times.push_back(took.count());
-      if (&each != &variants.front()) continue;
-      for (std::size_t p = 0; p < kPassCount; ++p) parts[p].push_back(1e3 * each.world.times().pass[p]);
+      if (round >= kWarmUp) each.times.push_back(took.count());
     }
     if (round + 1 != kComparedSteps) continue;
     variants.front().world.fill(first);
@@ -127,10 +144,7 @@ PassTable measure_passes(const Scene& scene, const SampledScene& sampled, const 
     each.row.slower = median(ratios);
     table.rows.push_back(each.row);
   }
-  for (std::size_t p = 0; p < kPassCount; ++p) {
-    const double ms = median(parts[p]);
-    if (ms > 0.0) table.shares.push_back({static_cast<PassId>(p), ms, ms / table.rows.front().step_ms});
-  }
+  table.shares = shares_of(variants.front().world, hands, options, table.alone_ms);
   return table;
 }
 

@@ -23,12 +23,13 @@ inline constexpr int kComparedSteps = 20;
 struct PassShare {
   PassId pass;
   double ms = 0.0;  ///< median; of an engine's pass on a GPU the GPU's own time, which overlaps with the rest
-  double share = 0.0;  ///< of the median step
+  double share = 0.0;  ///< of PassTable::alone_ms
 };
 
 struct PassTable {
   std::vector<PassRow> rows;
   std::vector<PassShare> shares;  ///< of those that take time, in their order
+  double alone_ms = 0.0;          ///< the median step as planned, of steps in a row
 };
 
 struct PassOptions {

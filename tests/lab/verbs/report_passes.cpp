@@ -26,7 +26,8 @@ std::string agrees(const report::PassRow& row) {
 /// On a GPU its passes go on while the processor has its own, so that each have a sum of their own.
 void print_shares(const report::PassTable& found, Backend backend) {
   const bool gpu = backend == Backend::kCuda;
-  std::printf("\n%-32s %10s %10s\n", "within a step as planned", "ms", "share");
+  std::printf("\n%-32s %10s %10s   of %.4f ms, steps in a row\n", "within a step as planned", "ms", "share",
+              found.alone_ms);
   const auto line = [](const char* what, double ms, double share, const char* note) {
     std::printf("%-32s %10.4f %9.1f%%%s\n", what, ms, 100.0 * share, note);
   };
