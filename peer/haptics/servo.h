@@ -156,7 +156,7 @@ class Servo {
   double time_ = 0.0;
   double pace_ = 1.0;      // simulated s a s on the wall, smoothed
   bool lockstep_ = false;  // tick_in_lockstep(): a run whose clock is the world's
-  bool stands_ = false;  // the world does
+  bool stands_ = false;    // the world does
   bool moving_ = false;
   std::int64_t ticked_ns_ = 0;
   double sample_offset_ = 0.0;  // s that samples' time is ahead of the world's, after resets

@@ -79,7 +79,7 @@ struct RunSummary {
   double real_time_factor = 0.0;  ///< simulated over wall
   Spread step_ms;
   std::vector<std::pair<std::string, double>> step_share;  ///< of the step, 0–1, by pass
-  Spread device_loop_us;  ///< period, wake to wake
+  Spread device_loop_us;                                   ///< period, wake to wake
   std::uint64_t device_ticks = 0;
   std::uint64_t device_missed = 0;
   std::string device_scheduler;

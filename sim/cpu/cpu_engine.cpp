@@ -47,9 +47,7 @@ class CpuEngine final : public ParticleEngine {
     std::fill(s_.drags.begin(), s_.drags.end(), BodyDrag{});
     take_impulses(dt);
   }
-  void run(PassId id, const PassInputs& inputs) override {
-    function_of(id)(s_, inputs);
-  }
+  void run(PassId id, const PassInputs& inputs) override { function_of(id)(s_, inputs); }
   void wrenches(std::span<Wrench> out) override {
     std::copy(s_.found.begin(), s_.found.end(), out.begin());
     if (!s_.context.plan.clamps_penetration()) return;

@@ -161,8 +161,7 @@ TEST_F(StiffHand, IsWrittenAsTheWorldHasItWhileItAccelerates) {
 }
 
 TEST_F(StiffHand, IsWrittenAsTheWorldHasItWhenTheDeviceLoopIsHeldUp) {
-  run(
-      1.8, 1.0, [](double t) { return std::fmod(t, 0.1) < 0.002 ? 0.006 : 0.0; }, kNever);
+  run(1.8, 1.0, [](double t) { return std::fmod(t, 0.1) < 0.002 ? 0.006 : 0.0; }, kNever);
   const Error e = compare(0.0, 1.7);
   EXPECT_LT(e.force, 0.001 * e.most_force);
   EXPECT_LT(e.torque, 0.001 * e.most_torque);
