@@ -86,9 +86,8 @@ bool InputGate::accept(const PoseMessage& message, std::int64_t clock_ns) {
     // A stand that ended before a step has seen it, as in a world that waits, held all the same.
     const bool stood = message.stand && !(hand.has_good && hand.good.lost);
     if (held || stood) {
-      hand.lost_at = time_;
-      hand.lost_scale = held ? hand.scale : 1.0;
-      hand.lost_fade = stood || company(hand, clock_ns) != Company::kAlone ? kHandOver : kLostFade;
+      const bool hands_over = stood || company(hand, clock_ns) != Company::kAlone;
+      begin_fade(hand, held ? hand.scale : 1.0, hands_over ? kHandOver : kLostFade);
     }
     if (stood && !held) hand.last_pose = hand.last_held = message.pose;
   } else {
@@ -130,9 +129,7 @@ void InputGate::reset(const BodySnapshot& now, std::int64_t clock_ns) {
     hand.lost_scale = 0.0;
     // The start was settled into all hands: one that is not there now gives its share over, as a stand does.
     if (settled && !hand.good.engaged) {
-      hand.lost_at = now.time;
-      hand.lost_scale = 1.0;
-      hand.lost_fade = kHandOver;
+      begin_fade(hand, 1.0, kHandOver);
       hand.last_pose = hand.last_held = hand.good.pose;
     }
     hand.anew = true;
@@ -157,6 +154,12 @@ Company InputGate::company(const Hand& hand, std::int64_t clock_ns) const {
     found = Company::kShared;
   }
   return found;
+}
+
+void InputGate::begin_fade(Hand& hand, double scale, double seconds) const {
+  hand.lost_at = time_;
+  hand.lost_scale = scale;
+  hand.lost_fade = seconds;
 }
 
 /// Simulated s that a hand which was lost goes on holding, as a share of what it has for that.

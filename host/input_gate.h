@@ -80,6 +80,7 @@ class InputGate {
     Pose last_held;                // and where it held
   };
   void fill_input(Hand& hand, std::size_t grip, const BodySnapshot& now, std::int64_t clock_ns);
+  void begin_fade(Hand& hand, double scale, double seconds) const;
   double left_to_fade(const Hand& hand) const;
   void note_interval(std::int64_t clock_ns);
   Company company(const Hand& hand, std::int64_t clock_ns) const;

@@ -70,8 +70,8 @@ class ParticleEngine {
   /// fixes.
   virtual void add_to(Fingerprint& print) const = 0;
   virtual Diagnostics diagnostics() const = 0;
-  /// The times of its passes in the last sub-step that is known to be over, where it runs them later than it
-  /// is asked to; null where a pass is over when run() is.
+  /// The times of its passes in the last sub-step that was timed and is known to be over, where it runs them
+  /// later than it is asked to; null where a pass is over when run() is.
   virtual const StepTimes* times() const { return nullptr; }
   /// Why kStatusDeviceLost was set, empty while all is well.
   virtual std::string failure() const { return {}; }

@@ -30,8 +30,8 @@ struct HandleInput {
   double scale = 1.0;    ///< 0–1, ramps the coupling in on engaging
 };
 
-/// Time of each pass of a step, s: wall time; of an engine's passes on a GPU the GPU's own, of the sub-step
-/// before, which overlap with the others. A fused pass is in the one whose loop runs it.
+/// Time of each pass of a step, s: wall time; of an engine's passes on a GPU the GPU's own, as the newest
+/// timed sub-step had them, which overlap with the others. A fused pass is in the one whose loop runs it.
 struct StepTimes {
   std::array<double, kPassCount> pass{};
   double total = 0.0;  ///< wall time of the whole step

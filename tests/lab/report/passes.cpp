@@ -63,8 +63,8 @@ double farthest(const Snapshot& a, const Snapshot& b) {
 }
 
 /// Of steps in a row: on a GPU what another world's step left under way would be in the passes' times.
-std::vector<PassShare> shares_of(World& world, const std::vector<HandleInput>& hands,
-                                 const PassOptions& options, double& step_ms) {
+void measure_shares(World& world, const std::vector<HandleInput>& hands, const PassOptions& options,
+                    PassTable& table) {
   std::vector<double> steps;
   std::array<std::vector<double>, kPassCount> parts;
   for (int i = 0; i < kWarmUp + options.steps; ++i) {
@@ -74,13 +74,11 @@ std::vector<PassShare> shares_of(World& world, const std::vector<HandleInput>& h
     steps.push_back(1e3 * world.times().total);
     for (std::size_t p = 0; p < kPassCount; ++p) parts[p].push_back(1e3 * world.times().pass[p]);
   }
-  step_ms = median(steps);
-  std::vector<PassShare> shares;
+  table.alone_ms = median(steps);
   for (std::size_t p = 0; p < kPassCount; ++p) {
     const double ms = median(parts[p]);
-    if (ms > 0.0) shares.push_back({static_cast<PassId>(p), ms, ms / step_ms});
+    if (ms > 0.0) table.shares.push_back({static_cast<PassId>(p), ms, ms / table.alone_ms});
   }
-  return shares;
 }
 
 }  // namespace
@@ -144,7 +142,7 @@ PassTable measure_passes(const Scene& scene, const SampledScene& sampled, const 
     each.row.slower = median(ratios);
     table.rows.push_back(each.row);
   }
-  table.shares = shares_of(variants.front().world, hands, options, table.alone_ms);
+  measure_shares(variants.front().world, hands, options, table);
   return table;
 }
 
