@@ -17,36 +17,25 @@ StepConstants step_constants(const RunConstants& c) {
           c.correction};
 }
 
-void SortSpace::allocate(std::uint32_t largest_count, int bits, CallCheck& check) {
-  bits_ = bits;
-  identity_.allocate(largest_count, check);
-  order_.allocate(largest_count, check);
+void SortSpace::allocate(std::uint32_t largest_count, std::uint32_t retired, CallCheck& check) {
+  retired_ = retired;
+  counts_.allocate(retired + 1, check);
+  tickets_.allocate(largest_count, check);
+  came_.allocate(largest_count, check);
   std::size_t bytes = 0;
-  if (check.failed() || largest_count == 0) return;
-  check.ok(sort_by_key(nullptr, bytes, nullptr, nullptr, nullptr, nullptr, largest_count, bits_, nullptr),
-           "sizing the sort");
-  temp_.allocate(bytes, check);
   if (check.failed()) return;
-  launch_identity(identity_.data(), largest_count, nullptr);
-  check.launched("identity");
+  check.ok(exclusive_sum(nullptr, bytes, nullptr, nullptr, retired + 1, nullptr), "sizing the sort");
+  temp_.allocate(bytes, check);
 }
 
-void SortSpace::sort(const std::uint32_t* keys, std::uint32_t* sorted_keys, std::uint32_t* order,
-                     std::uint32_t count, CallCheck& check, cudaStream_t stream) {
+void SortSpace::find_cells(const std::uint32_t* keys, std::uint32_t count, bool some_out, CellTable cells,
+                           CallCheck& check, cudaStream_t stream) {
+  if (check.failed()) return;
+  launch_count_keys(keys, count, retired_, some_out ? cells.start + retired_ : nullptr, view(), stream);
   std::size_t bytes = temp_.bytes();
-  check.ok(sort_by_key(temp_.data(), bytes, keys, sorted_keys, identity_.data(), order, count, bits_, stream),
-           "sort");
-}
-
-void CellTableBuffers::allocate(std::uint32_t cells, CallCheck& check) {
-  begin_.allocate(cells, check);
-  end_.allocate(cells, check);
-  if (!check.failed()) clear(check, nullptr);
-}
-
-void CellTableBuffers::clear(CallCheck& check, cudaStream_t stream) {
-  check.ok(cudaMemsetAsync(begin_.data(), 0xff, begin_.bytes(), stream), "clearing the cells");
-  check.ok(cudaMemsetAsync(end_.data(), 0, end_.bytes(), stream), "clearing the cells");
+  check.ok(exclusive_sum(temp_.data(), bytes, counts_.data(), cells.start, retired_ + 1, stream), "sort");
+  launch_note_sources(keys, count, cells.start, view(), stream);
+  check.launched("sort");
 }
 
 namespace {
@@ -69,7 +58,7 @@ void FluidBuffers::allocate(std::size_t count, const RunConstants& constants, Ca
         packs);
   pressed_.allocate(count, check);
   force_.allocate(count, check);
-  cells_.allocate(constants.grid.cell_count(), check);
+  starts_.allocate(constants.grid.cell_count() + 1, check);
   if (needs(constants.plan, ColumnNeed::kCorrected)) {
     push_a_.allocate(count, check);
     push_b_.allocate(count, check);
@@ -92,7 +81,7 @@ void FluidBuffers::allocate(std::size_t count, const RunConstants& constants, Ca
   view_.passed_z = passed_z_.data();
   view_.left = left_.data();
   view_.force = force_.data();
-  view_.cells = cells_.view();
+  view_.cells.start = starts_.data();
   allow_viscosities(constants, check);
 }
 
@@ -108,6 +97,7 @@ void FluidBuffers::write(const MovingPacks<PlainColumn>& packs, CallCheck& check
         if (buffer.size() > 0) buffer.write(from, check, stream);
       },
       packs, packs_[current_]);
+  some_out_ = false;
 }
 
 void FluidBuffers::sort(const StepConstants& constants, SortSpace& space, CallCheck& check,
@@ -115,10 +105,10 @@ void FluidBuffers::sort(const StepConstants& constants, SortSpace& space, CallCh
   const FluidView from = view_.state;
   current_ = 1 - current_;
   view_.state = view_of(packs_[current_]);
-  space.sort(from.key, view_.state.key, space.order(), count(), check, stream);
-  cells_.clear(check, stream);
+  space.find_cells(from.key, count(), some_out_, view_.cells, check, stream);
   if (check.failed()) return;
-  launch_gather_fluid(constants, from, space.order(), view_, stream);
+  some_out_ = true;
+  launch_gather_fluid(constants, from, space.view(), view_, stream);
   check.launched("gathering fluid");
 }
 
@@ -149,7 +139,7 @@ void SurfaceBuffers::allocate(const std::vector<SurfaceParticle>& particles, con
   viscosity_.allocate(count, check);
   sorted_reach_.allocate(count, check);
   sorted_body_.allocate(count, check);
-  cells_.allocate(constants.grid.cell_count(), check);
+  starts_.allocate(constants.grid.cell_count() + 1, check);
   local_view_ = {count,         position_.data(), material_.data(), reach_.data(),
                  body_.data(),  placed_.data(),   velocity_.data(), key_.data(),
                  force_.data(), couple_.data(),   drag_a_.data(),   drag_b_.data()};
@@ -161,7 +151,7 @@ void SurfaceBuffers::allocate(const std::vector<SurfaceParticle>& particles, con
                   sorted_body_.data(),
                   sorted_key_.data(),
                   order_.data(),
-                  cells_.view(),
+                  {starts_.data()},
                   upload_mirrors(particles, check)};
 }
 
@@ -188,10 +178,9 @@ void SurfaceBuffers::place(const StepConstants& constants, const DeviceBody* bod
   if (count() == 0 || check.failed()) return;
   launch_place_surface(constants, local_view_, bodies, stream);
   check.launched("placing body particles");
-  space.sort(key_.data(), sorted_key_.data(), order_.data(), count(), check, stream);
-  cells_.clear(check, stream);
+  space.find_cells(key_.data(), count(), false, sorted_view_.cells, check, stream);
   if (check.failed()) return;
-  launch_gather_surface(constants, local_view_, sorted_view_, stream);
+  launch_gather_surface(constants, local_view_, space.view(), sorted_view_, stream);
   check.launched("gathering body particles");
 }
 

@@ -9,28 +9,20 @@ namespace slosh::cuda {
 /// What of them the kernels need.
 StepConstants step_constants(const RunConstants& constants);
 
-/// What a sort needs; shared by the sets, one after the other in a stream.
+/// What a counting sort by cell needs; shared by the sets, one after the other in a stream.
 class SortSpace {
  public:
-  void allocate(std::uint32_t largest_count, int bits, CallCheck& check);
-  void sort(const std::uint32_t* keys, std::uint32_t* sorted_keys, std::uint32_t* order, std::uint32_t count,
-            CallCheck& check, cudaStream_t stream);
-  std::uint32_t* order() const { return order_.data(); }
+  void allocate(std::uint32_t largest_count, std::uint32_t retired, CallCheck& check);
+  /// Where each cell will begin, to `cells`; what is left is to bring each to its place. `some_out`: `cells` is
+  /// of the sort before, whose last particles are out.
+  void find_cells(const std::uint32_t* keys, std::uint32_t count, bool some_out, CellTable cells,
+                  CallCheck& check, cudaStream_t stream);
+  SortView view() const { return {counts_.data(), tickets_.data(), came_.data()}; }
 
  private:
-  DeviceBuffer<std::uint32_t> identity_, order_;
+  DeviceBuffer<std::uint32_t> counts_, tickets_, came_;
   DeviceBuffer<unsigned char> temp_;
-  int bits_ = 32;
-};
-
-class CellTableBuffers {
- public:
-  void allocate(std::uint32_t cells, CallCheck& check);
-  void clear(CallCheck& check, cudaStream_t stream);
-  CellTable view() const { return {begin_.data(), end_.data()}; }
-
- private:
-  DeviceBuffer<std::uint32_t> begin_, end_;
+  std::uint32_t retired_ = 0;
 };
 
 /// Fluid particles, and a second set of packs that a sort gathers to.
@@ -59,7 +51,8 @@ class FluidBuffers {
   DeviceBuffer<float> drag_z_, expansion_;
   DeviceBuffer<float4> passed_x_, passed_y_, passed_z_;  // kFluidStress
   DeviceBuffer<float> left_;                             // kFluidStress
-  CellTableBuffers cells_;
+  DeviceBuffer<std::uint32_t> starts_;                   // of cells
+  bool some_out_ = false;                                // since write(), these are sorted
   SortedFluid view_;
 };
 
@@ -86,8 +79,7 @@ class SurfaceBuffers {
   DeviceBuffer<float2> mirror_bend_b_;
   DeviceBuffer<float> viscosity_, reach_, sorted_reach_;
   DeviceBuffer<std::uint16_t> body_, sorted_body_;
-  DeviceBuffer<std::uint32_t> key_, sorted_key_, order_;
-  CellTableBuffers cells_;
+  DeviceBuffer<std::uint32_t> key_, sorted_key_, order_, starts_;
   LocalSurface local_view_;
   SortedSurface sorted_view_;
 };

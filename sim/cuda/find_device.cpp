@@ -12,10 +12,10 @@ CudaDevice find_cuda_device() {
   if (check.ok(cudaGetDeviceCount(&count), "no GPU") && count > 0) {
     check.ok(cudaGetDeviceProperties(&properties, 0), "cudaGetDeviceProperties");
     // Runs something: a GPU that this program has no code for is found here.
-    cuda::DeviceBuffer<std::uint32_t> probe;
+    cuda::DeviceBuffer<float4> probe;
     probe.allocate(1, check);
     if (!check.failed()) {
-      cuda::launch_identity(probe.data(), 1, nullptr);
+      cuda::launch_damp(probe.data(), 1, 1.0f, nullptr);
       check.launched("the GPU cannot run this program's code");
       check.ok(cudaDeviceSynchronize(), "the GPU does not answer");
     }

@@ -32,11 +32,18 @@ struct StepConstants {
   CorrectionConstants correction;
 };
 
-/// Where each cell's particles are: [begin, end), or {max, 0} where a cell is empty, so that a row of three
-/// cells is the minimum of the begins and the maximum of the ends.
+/// Where each cell's particles begin in sorted order; the next cell's begin where they end. One more than cells:
+/// the last says where those begin that are out of the domain.
 struct CellTable {
-  std::uint32_t* begin = nullptr;
-  std::uint32_t* end = nullptr;
+  std::uint32_t* start = nullptr;
+};
+
+/// A counting sort under way. Its order is that of cells and, within a cell, of before: tickets are given to
+/// whoever comes first, so a particle's place in its cell is how many of its cell's came from before it.
+struct SortView {
+  std::uint32_t* counts = nullptr;   ///< of each key; 0 before and after a sort
+  std::uint32_t* tickets = nullptr;  ///< of each particle, within its key
+  std::uint32_t* came = nullptr;     ///< where from, in the order of keys and tickets
 };
 
 /// The packs of sim/columns.h that outlive a step: `Store` is a buffer, a pointer or a vector.
@@ -178,19 +185,24 @@ struct DeviceWrench {
   Wrench wrench() const { return {{force[0], force[1], force[2]}, {torque[0], torque[1], torque[2]}}; }
 };
 
-/// sort.cu. Stable; keys below 2^bits. Call with temp = nullptr to learn temp_bytes.
-cudaError_t sort_by_key(void* temp, std::size_t& temp_bytes, const std::uint32_t* keys,
-                        std::uint32_t* sorted_keys, const std::uint32_t* identity, std::uint32_t* order,
-                        std::uint32_t count, int bits, cudaStream_t stream);
+/// scan.cu: starts[i] = counts[0] + … + counts[i − 1]. Call with temp = nullptr to learn temp_bytes.
+cudaError_t exclusive_sum(void* temp, std::size_t& temp_bytes, const std::uint32_t* counts,
+                          std::uint32_t* starts, std::uint32_t count, cudaStream_t stream);
 
-/// order.cu
-void launch_identity(std::uint32_t* values, std::uint32_t count, cudaStream_t stream);
-void launch_gather_fluid(const StepConstants& constants, const FluidView& from, const std::uint32_t* order,
+/// order.cu. Counts keys and gives tickets; who was out already, at `*out_before` and behind, keeps its place.
+/// `out_before`: null where nobody was.
+void launch_count_keys(const std::uint32_t* keys, std::uint32_t count, std::uint32_t retired,
+                       const std::uint32_t* out_before, const SortView& sort, cudaStream_t stream);
+/// Notes who came from where. `start`: of the counts.
+void launch_note_sources(const std::uint32_t* keys, std::uint32_t count, const std::uint32_t* start,
+                         const SortView& sort, cudaStream_t stream);
+/// Each to its place; the counts become 0 again.
+void launch_gather_fluid(const StepConstants& constants, const FluidView& from, const SortView& sort,
                          const SortedFluid& to, cudaStream_t stream);
 void launch_place_surface(const StepConstants& constants, const LocalSurface& local, const DeviceBody* bodies,
                           cudaStream_t stream);
-void launch_gather_surface(const StepConstants& constants, const LocalSurface& from, const SortedSurface& to,
-                           cudaStream_t stream);
+void launch_gather_surface(const StepConstants& constants, const LocalSurface& from, const SortView& sort,
+                           const SortedSurface& to, cudaStream_t stream);
 void launch_carry_probes(const StepConstants& constants, const DeviceProbe* probes,
                          const std::uint32_t* slots, std::uint32_t count, const FluidView& fluid,
                          cudaStream_t stream);

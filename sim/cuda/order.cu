@@ -5,35 +5,52 @@ namespace slosh::cuda {
 
 namespace {
 
-__global__ void identity_kernel(std::uint32_t* values, std::uint32_t count) {
-  const std::uint32_t i = thread_index();
-  if (i < count) values[i] = i;
-}
+constexpr std::uint32_t kStays = 0xffffffffu;  // the ticket of who was out already
 
-// Writes where the cell of the p-th sorted key begins or ends, if it does so at p.
-__device__ void mark_cell(const std::uint32_t* keys, std::uint32_t p, std::uint32_t count,
-                          std::uint32_t retired, const CellTable& cells) {
+__global__ void count_keys_kernel(const std::uint32_t* keys, std::uint32_t count, std::uint32_t retired,
+                                  const std::uint32_t* out_before, SortView sort) {
+  const std::uint32_t p = thread_index();
+  if (p >= count) return;
   const std::uint32_t key = keys[p];
-  if (key >= retired) return;
-  if (p == 0 || keys[p - 1] != key) cells.begin[key] = p;
-  if (p + 1 == count || keys[p + 1] != key) cells.end[key] = p + 1;
+  const bool stays = key >= retired && out_before && p >= *out_before;
+  sort.tickets[p] = stays ? kStays : atomicAdd(sort.counts + key, 1u);
 }
 
-__global__ void gather_fluid_kernel(StepConstants c, FluidView from, const std::uint32_t* order,
-                                    SortedFluid to) {
+__global__ void note_sources_kernel(const std::uint32_t* keys, std::uint32_t count, const std::uint32_t* start,
+                                    SortView sort) {
+  const std::uint32_t p = thread_index();
+  if (p < count && sort.tickets[p] != kStays) sort.came[start[keys[p]] + sort.tickets[p]] = p;
+}
+
+// Where `p`, whose key is `key`, goes to. The order of those that are out is nobody's concern.
+__device__ std::uint32_t place_of(std::uint32_t p, std::uint32_t key, std::uint32_t retired,
+                                  const std::uint32_t* start, const SortView& sort) {
+  const std::uint32_t ticket = sort.tickets[p];
+  if (ticket == kStays) return p;
+  sort.counts[key] = 0;
+  const std::uint32_t begin = start[key];
+  if (key >= retired) return begin + ticket;
+  const std::uint32_t end = start[key + 1];
+  std::uint32_t place = begin;
+  for (std::uint32_t i = begin; i < end; ++i) place += sort.came[i] < p;
+  return place;
+}
+
+__global__ void gather_fluid_kernel(StepConstants c, FluidView from, SortView sort, SortedFluid to) {
   const std::uint32_t p = thread_index();
   if (p >= to.count) return;
-  const std::uint32_t source = order[p];
+  const std::uint32_t key = from.key[p];
+  const std::uint32_t place = place_of(p, key, c.grid.retired_key(), to.cells.start, sort);
   for_each_pack(
       [&](auto pack, const auto* values, auto* gathered) {
         if constexpr (pack == Pack::kSolved) {
-          if (values) gathered[p] = values[source];
+          if (values) gathered[place] = values[p];
         } else if constexpr (carried(pack)) {
-          gathered[p] = values[source];
+          gathered[place] = values[p];
         }
       },
       from, to.state);
-  mark_cell(to.state.key, p, to.count, c.grid.retired_key(), to.cells);
+  to.state.key[place] = key;
 }
 
 __global__ void place_surface_kernel(StepConstants c, LocalSurface local, const DeviceBody* bodies) {
@@ -49,16 +66,18 @@ __global__ void place_surface_kernel(StepConstants c, LocalSurface local, const 
   local.key[i] = c.grid.contains(x.x, x.y, x.z) ? c.grid.cell_of(x.x, x.y, x.z) : c.grid.retired_key();
 }
 
-__global__ void gather_surface_kernel(StepConstants c, LocalSurface from, SortedSurface to) {
+__global__ void gather_surface_kernel(StepConstants c, LocalSurface from, SortView sort, SortedSurface to) {
   const std::uint32_t i = thread_index();
   if (i >= to.count) return;
-  const std::uint32_t source = to.order[i];
-  to.x[i] = from.placed[source];
-  to.v[i] = from.velocity[source];
-  to.viscosity[i] = from.material[source].y;
-  to.reach[i] = from.reach[source];
-  to.body[i] = from.body[source];
-  mark_cell(to.key, i, to.count, c.grid.retired_key(), to.cells);
+  const std::uint32_t key = from.key[i];
+  const std::uint32_t place = place_of(i, key, c.grid.retired_key(), to.cells.start, sort);
+  to.x[place] = from.placed[i];
+  to.v[place] = from.velocity[i];
+  to.viscosity[place] = from.material[i].y;
+  to.reach[place] = from.reach[i];
+  to.body[place] = from.body[i];
+  to.key[place] = key;
+  to.order[place] = i;
 }
 
 __global__ void carry_probes_kernel(StepConstants c, const DeviceProbe* probes, const std::uint32_t* slots,
@@ -97,13 +116,19 @@ __global__ void scatter_kernel(StepConstants c, FluidView fluid, std::uint32_t c
 
 }  // namespace
 
-void launch_identity(std::uint32_t* values, std::uint32_t count, cudaStream_t stream) {
-  if (count) identity_kernel<<<blocks_for(count), kThreads, 0, stream>>>(values, count);
+void launch_count_keys(const std::uint32_t* keys, std::uint32_t count, std::uint32_t retired,
+                       const std::uint32_t* out_before, const SortView& sort, cudaStream_t stream) {
+  count_keys_kernel<<<blocks_for(count), kThreads, 0, stream>>>(keys, count, retired, out_before, sort);
 }
 
-void launch_gather_fluid(const StepConstants& constants, const FluidView& from, const std::uint32_t* order,
+void launch_note_sources(const std::uint32_t* keys, std::uint32_t count, const std::uint32_t* start,
+                         const SortView& sort, cudaStream_t stream) {
+  note_sources_kernel<<<blocks_for(count), kThreads, 0, stream>>>(keys, count, start, sort);
+}
+
+void launch_gather_fluid(const StepConstants& constants, const FluidView& from, const SortView& sort,
                          const SortedFluid& to, cudaStream_t stream) {
-  gather_fluid_kernel<<<blocks_for(to.count), kThreads, 0, stream>>>(constants, from, order, to);
+  gather_fluid_kernel<<<blocks_for(to.count), kThreads, 0, stream>>>(constants, from, sort, to);
 }
 
 void launch_place_surface(const StepConstants& constants, const LocalSurface& local, const DeviceBody* bodies,
@@ -111,9 +136,9 @@ void launch_place_surface(const StepConstants& constants, const LocalSurface& lo
   place_surface_kernel<<<blocks_for(local.count), kThreads, 0, stream>>>(constants, local, bodies);
 }
 
-void launch_gather_surface(const StepConstants& constants, const LocalSurface& from, const SortedSurface& to,
-                           cudaStream_t stream) {
-  gather_surface_kernel<<<blocks_for(to.count), kThreads, 0, stream>>>(constants, from, to);
+void launch_gather_surface(const StepConstants& constants, const LocalSurface& from, const SortView& sort,
+                           const SortedSurface& to, cudaStream_t stream) {
+  gather_surface_kernel<<<blocks_for(to.count), kThreads, 0, stream>>>(constants, from, sort, to);
 }
 
 void launch_carry_probes(const StepConstants& constants, const DeviceProbe* probes,

@@ -70,22 +70,20 @@ __device__ inline void for_neighbors(const CellGrid& grid, const CellTable& cell
                                      F&& f) {
   for (std::uint32_t n = 0; n < 9; ++n) {
     const std::uint32_t first = grid.row_around(cell, n);
-    const std::uint32_t begin =
-        min(min(__ldg(cells.begin + first), __ldg(cells.begin + first + 1)), __ldg(cells.begin + first + 2));
-    const std::uint32_t end =
-        max(max(__ldg(cells.end + first), __ldg(cells.end + first + 1)), __ldg(cells.end + first + 2));
+    const std::uint32_t begin = __ldg(cells.start + first);
+    const std::uint32_t end = __ldg(cells.start + first + 3);
     for (std::uint32_t j = begin + Team::lane(); j < end; j += Team::kLanes) f(j);
   }
 }
 
 /// Whether there is any particle in the 27 cells around `cell`.
 __device__ inline bool any_near(const CellGrid& grid, const CellTable& cells, std::uint32_t cell) {
-  std::uint32_t end = 0;  // an empty cell ends at 0
+  bool any = false;
   for (std::uint32_t n = 0; n < 9; ++n) {
     const std::uint32_t first = grid.row_around(cell, n);
-    end |= __ldg(cells.end + first) | __ldg(cells.end + first + 1) | __ldg(cells.end + first + 2);
+    any |= __ldg(cells.start + first) != __ldg(cells.start + first + 3);
   }
-  return end != 0;
+  return any;
 }
 
 }  // namespace slosh::cuda

@@ -1,7 +1,6 @@
 #include "sim/cuda/state.h"
 
 #include <algorithm>
-#include <bit>
 
 namespace slosh::cuda {
 
@@ -17,7 +16,7 @@ CudaState::CudaState(const RunConstants& constants_in, const ParticleStart& star
   fixed.allocate(start.fixed, constants, check);
   moving.allocate(start.moving, constants, check);
   const std::size_t largest = std::max({start.particles.size(), start.fixed.size(), start.moving.size()});
-  space.allocate(static_cast<std::uint32_t>(largest), std::bit_width(constants.grid.retired_key()), check);
+  space.allocate(static_cast<std::uint32_t>(largest), constants.grid.retired_key(), check);
   kinds.upload(constants.kinds, check);
   sums.plan(constants.plan, start, bodies.size(), check);
   clamps.plan(constants, start, bodies.size(), check);
