@@ -2,6 +2,8 @@
 
 #include <vector>
 
+#include "sim/cuda/solve_rows.h"
+
 namespace slosh::cuda {
 
 StepConstants step_constants(const RunConstants& c) {
@@ -63,6 +65,15 @@ void FluidBuffers::allocate(std::size_t count, const RunConstants& constants, Ca
     push_a_.allocate(count, check);
     push_b_.allocate(count, check);
     drag_z_.allocate(count, check);
+  }
+  if (needs(constants.plan, ColumnNeed::kCorrected)) {
+    const std::uint32_t lanes = tensor_lanes(static_cast<std::uint32_t>(count));
+    // A team's rows of cells do not share out evenly.
+    const std::uint32_t room = row_room(constants.plan) / lanes + (lanes > 1 ? 4 : 0);
+    const std::size_t threads = (count * lanes + 127) / 128 * 128;
+    near_.allocate(threads * room, check);
+    near_counts_.allocate(threads, check);
+    view_.near = {room, near_.data(), near_counts_.data()};
   }
   if (needs(constants.plan, ColumnNeed::kSolved)) expansion_.allocate(count, check);
   if (constants.plan.passes_stress) {

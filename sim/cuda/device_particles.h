@@ -52,6 +52,7 @@ class FluidBuffers {
   DeviceBuffer<float4> passed_x_, passed_y_, passed_z_;  // kFluidStress
   DeviceBuffer<float> left_;                             // kFluidStress
   DeviceBuffer<std::uint32_t> starts_;                   // of cells
+  DeviceBuffer<std::uint32_t> near_, near_counts_;
   bool some_out_ = false;                                // since write(), these are sorted
   SortedFluid view_;
 };

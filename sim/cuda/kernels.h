@@ -91,6 +91,18 @@ using DevicePointer = T*;
 /// Fluid particles (and probes) in some order.
 using FluidView = MovingPacks<DevicePointer>;
 
+/// The fluid that each thread of the density pass found in reach, for the force pass's thread of the same particle.
+/// Entry k of a warp's 32 threads is one run of memory.
+struct NearLists {
+  std::uint32_t room = 0;  ///< entries a thread; who has more walks the cells anew
+  std::uint32_t* entries = nullptr;
+  std::uint32_t* counts = nullptr;  ///< found, written down or not
+
+  SLOSH_HD std::uint32_t* of(std::uint32_t thread) const {
+    return entries + (std::size_t{thread / 32} * room * 32 + thread % 32);
+  }
+};
+
 /// Sorted fluid with what the passes of a step add.
 struct SortedFluid {
   std::uint32_t count = 0;  ///< retired ones, at the end, included
@@ -109,6 +121,7 @@ struct SortedFluid {
   float* left = nullptr;    ///< viscosity for Eq 9 with fluid, Pa·s
   float4* force = nullptr;  ///< N; w: 1 where bodies are in the cells around, else 0
   CellTable cells;
+  NearLists near;  ///< not of kPaper
 };
 
 /// Body particles as they stay for the run, in local order: body by body.
@@ -211,6 +224,8 @@ void launch_damp(float4* velocities, std::uint32_t count, float keep, cudaStream
 void launch_scatter(const StepConstants& constants, const FluidView& fluid, std::uint32_t count,
                     std::uint32_t visible, float* positions, std::uint8_t* kinds, cudaStream_t stream);
 
+/// density.cu: how many threads share a particle of the corrected model's, in its passes over fluid.
+std::uint32_t tensor_lanes(std::uint32_t count);
 /// density.cu: Eq 2 and 7. `artificial`: any_artificial_viscosity.
 void launch_density(const StepConstants& constants, const Plan& plan, const ParticleKind* kinds,
                     bool artificial, const SortedFluid& fluid, const SortedSurface& fixed,

@@ -78,15 +78,15 @@ __device__ inline float reach_of(const NeighborColumns& n, std::uint32_t j, floa
 
 /// Adds the forces of the neighbours, or of the thread's share of them. `h`: within which p meets fluid, m.
 template <class Team, class Parts, PairRule rule, Viscosity viscosity,
-          Neighbours neighbours = Neighbours::kFluid, class Sum = ForceSum<float>>
+          Neighbours neighbours = Neighbours::kFluid, class Walk, class Sum = ForceSum<float>>
 __device__ inline void add_forces(const StepConstants& c, const ParticleView<float>& p,
-                                  const NeighborColumns& n, const CellTable& cells, std::uint32_t cell,
-                                  float h, Sum& sum, float of_fluid = 1.0f) {
+                                  const NeighborColumns& n, const Walk& walk, float h, Sum& sum,
+                                  float of_fluid = 1.0f) {
   constexpr bool kOfFluid = is_corrected_fluid(rule) || is_corrected_body(rule);
   // With one viscosity, viscosity times velocity is in u already.
   constexpr bool kViscous =
       is_corrected_fluid(rule) ? viscosity == Viscosity::kPair : viscosity != Viscosity::kNone;
-  for_neighbors<Team>(c.grid, cells, cell, [&](std::uint32_t j) {
+  walk([&](std::uint32_t j) {
     ParticleView<float> i;
     const float4 x = __ldg(n.x + j);
     i.x = x.x;

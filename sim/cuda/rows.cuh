@@ -76,6 +76,38 @@ __device__ inline void for_neighbors(const CellGrid& grid, const CellTable& cell
   }
 }
 
+/// Calls f(j) for what the density pass found, or the thread's share of it, in the same order; f sees to it that more
+/// than that does no harm.
+template <class Team, class F>
+__device__ inline void for_listed(const CellGrid& grid, const SortedFluid& fluid, std::uint32_t cell,
+                                  std::uint32_t found, F&& f) {
+  if (found > fluid.near.room) return for_neighbors<Team>(grid, fluid.cells, cell, f);
+  const std::uint32_t* entry = fluid.near.of(thread_index());
+  for (std::uint32_t k = 0; k < found; ++k, entry += 32) f(*entry);
+}
+
+/// How a kernel comes to a particle's neighbours: f(j) for each, or for the thread's share of them.
+template <class Team>
+struct CellWalk {
+  const CellGrid& grid;
+  const CellTable& cells;
+  std::uint32_t cell;
+  template <class F>
+  __device__ void operator()(F&& f) const {
+    for_neighbors<Team>(grid, cells, cell, f);
+  }
+};
+template <class Team>
+struct ListWalk {
+  const CellGrid& grid;
+  const SortedFluid& fluid;
+  std::uint32_t cell;
+  template <class F>
+  __device__ void operator()(F&& f) const {
+    for_listed<Team>(grid, fluid, cell, fluid.near.counts[thread_index()], f);
+  }
+};
+
 /// Whether there is any particle in the 27 cells around `cell`.
 __device__ inline bool any_near(const CellGrid& grid, const CellTable& cells, std::uint32_t cell) {
   bool any = false;

@@ -80,12 +80,25 @@ __global__ __launch_bounds__(kThreads, stresses ? kBlocksWithStress : 0) void co
   const float h = c.support_radius;
   Neighborhood<float> sum{};
   FlowSums<float> flow{};
+  // Of 216 candidates 34 are in reach. Written down first: summed as they are found, a warp would do for nearly each
+  // candidate what one of its threads needs done.
+  std::uint32_t found = 0;
+  std::uint32_t* entry = fluid.near.of(thread_index());
   for_neighbors<Team>(c.grid, fluid.cells, cell, [&](std::uint32_t j) {
     const float4 y = __ldg(fluid.state.x + j);
     const float dx = x.x - y.x;
     const float dy = x.y - y.y;
     const float dz = x.z - y.z;
-    // Of 216 candidates 34 are in reach: the others' velocities are not fetched.
+    if (dx * dx + dy * dy + dz * dz >= h * h) return;
+    if (found < fluid.near.room) entry[32 * found] = j;
+    ++found;
+  });
+  fluid.near.counts[thread_index()] = found;
+  for_listed<Team>(c.grid, fluid, cell, found, [&](std::uint32_t j) {
+    const float4 y = __ldg(fluid.state.x + j);
+    const float dx = x.x - y.x;
+    const float dy = x.y - y.y;
+    const float dz = x.z - y.z;
     if (dx * dx + dy * dy + dz * dz >= h * h) return;
     const float* v = reinterpret_cast<const float*>(fluid.state.v + j);
     add_fluid_neighbor<Kernel>(dx, dy, dz, v[0], v[1], v[2], h, 1.0f, sum);
@@ -161,6 +174,12 @@ __global__ __launch_bounds__(kThreads, stresses ? kBlocksWithStress : 0) void co
 }
 
 }  // namespace
+
+std::uint32_t tensor_lanes(std::uint32_t count) {
+  std::uint32_t lanes = 1;
+  with_team<kTensorTeams>(count, [&]<class Team>() { lanes = Team::kLanes; });
+  return lanes;
+}
 
 void launch_density(const StepConstants& constants, const Plan& plan, const ParticleKind* kinds,
                     bool artificial, const SortedFluid& fluid, const SortedSurface& fixed,

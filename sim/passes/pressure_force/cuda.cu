@@ -9,7 +9,7 @@ namespace {
 // by what viscosity is left.
 template <class Team, class Parts>
 __device__ void add_passed_forces(const StepConstants& c, ParticleView<float> p, std::uint32_t self,
-                                  const NeighborColumns& n, const CellTable& cells, std::uint32_t cell,
+                                  const NeighborColumns& n, const ListWalk<Team>& walk,
                                   ForceSum<float>& sum) {
   using Kernel = typename Parts::ForceKernel;
   const float h = c.support_radius;
@@ -17,7 +17,7 @@ __device__ void add_passed_forces(const StepConstants& c, ParticleView<float> p,
   const Vector3<float> own_u{p.ux, p.uy, p.uz};
   p.ux = p.uy = p.uz = 0.0f;  // pairs need only the difference
   Vector3<float> slope{};     // Σ d (−W'/r)
-  for_neighbors<Team>(c.grid, cells, cell, [&](std::uint32_t j) {
+  walk([&](std::uint32_t j) {
     const float4 x = __ldg(n.x + j);
     const float dx = p.x - x.x, dy = p.y - x.y, dz = p.z - x.z;
     const float r_squared = dx * dx + dy * dy + dz * dz;
@@ -71,18 +71,25 @@ __global__ __launch_bounds__(kThreads, stresses ? kBlocksWithStress
   if constexpr (Parts::kCorrected) read_corrected(columns(fluid), p, self);
   ForceSum<float> sum{0.0f, 0.0f, 0.0f};
   if constexpr (stresses) {
-    add_passed_forces<Team, Parts>(c, self, p, columns(fluid), fluid.cells, cell, sum);
+    add_passed_forces<Team, Parts>(c, self, p, columns(fluid), ListWalk<Team>{c.grid, fluid, cell}, sum);
   } else {
-    add_forces<Team, Parts, Parts::kFluids, viscosity>(c, self, columns(fluid), fluid.cells, cell,
-                                                       c.support_radius, sum);
+    using Walk = std::conditional_t<Parts::kCorrected, ListWalk<Team>, CellWalk<Team>>;
+    const Walk walk = [&]() -> Walk {
+      if constexpr (Parts::kCorrected) {
+        return {c.grid, fluid, cell};
+      } else {
+        return {c.grid, fluid.cells, cell};
+      }
+    }();
+    add_forces<Team, Parts, Parts::kFluids, viscosity>(c, self, columns(fluid), walk, c.support_radius, sum);
   }
   if (fixed.count) {
     add_forces<Team, Parts, Parts::kWalls, kAgainstBodies, Neighbours::kWalls>(
-        c, self, columns(fixed), fixed.cells, cell, c.support_radius, sum);
+        c, self, columns(fixed), CellWalk<Team>{c.grid, fixed.cells, cell}, c.support_radius, sum);
   }
   if (moving.count) {
     add_forces<Team, Parts, Parts::kWalls, kAgainstBodies, Neighbours::kWalls>(
-        c, self, columns(moving), moving.cells, cell, c.support_radius, sum);
+        c, self, columns(moving), CellWalk<Team>{c.grid, moving.cells, cell}, c.support_radius, sum);
   }
   if constexpr (Parts::kCorrected && viscosity != Viscosity::kNone) {
     if (fixed.mirror.normal) add_mirror_forces<Team, Parts>(c, self, fixed, cell, sum);

@@ -26,8 +26,8 @@ __global__ __launch_bounds__(kThreads) void surface_force_kernel(StepConstants c
         viscosity == Viscosity::kOne ? 0.5f * (wall.own + wall.of_fluid * first_viscosity) : wall.own;
     const ParticleView<float> self = view(surface.x[i], surface.v[i], used);
     const float h = surface.reach[i];
-    add_forces<Team, Parts, Parts::kOnBodies, viscosity>(c, self, columns(fluid), fluid.cells, cell, h, sum,
-                                                         wall.of_fluid);
+    add_forces<Team, Parts, Parts::kOnBodies, viscosity>(
+        c, self, columns(fluid), CellWalk<Team>{c.grid, fluid.cells, cell}, h, sum, wall.of_fluid);
     if constexpr (Parts::kCorrected && viscosity != Viscosity::kNone) {
       const auto as_it_is = [](std::uint32_t, const float4& v) { return make_float3(v.x, v.y, v.z); };
       if (surface.mirror.normal)
