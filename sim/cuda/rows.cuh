@@ -76,6 +76,25 @@ __device__ inline void for_neighbors(const CellGrid& grid, const CellTable& cell
   }
 }
 
+/// As for_neighbors() f(j, x[j]), four loaded at a time: a thread waits for memory once in four.
+template <class Team, class F>
+__device__ inline void for_positions(const CellGrid& grid, const CellTable& cells, const float4* x,
+                                     std::uint32_t cell, F&& f) {
+  constexpr std::uint32_t kAtOnce = 4;
+  for (std::uint32_t n = 0; n < 9; ++n) {
+    const std::uint32_t first = grid.row_around(cell, n);
+    const std::uint32_t begin = __ldg(cells.start + first);
+    const std::uint32_t end = __ldg(cells.start + first + 3);
+    for (std::uint32_t j = begin + Team::lane(); j < end; j += kAtOnce * Team::kLanes) {
+      float4 at[kAtOnce];
+      for (std::uint32_t i = 0; i < kAtOnce; ++i) at[i] = __ldg(x + min(j + i * Team::kLanes, end - 1));
+      for (std::uint32_t i = 0; i < kAtOnce; ++i) {
+        if (j + i * Team::kLanes < end) f(j + i * Team::kLanes, at[i]);
+      }
+    }
+  }
+}
+
 /// Calls f(j) for what the density pass found, or the thread's share of it, in the same order; f sees to it that more
 /// than that does no harm.
 template <class Team, class F>
@@ -83,7 +102,13 @@ __device__ inline void for_listed(const CellGrid& grid, const SortedFluid& fluid
                                   std::uint32_t found, F&& f) {
   if (found > fluid.near.room) return for_neighbors<Team>(grid, fluid.cells, cell, f);
   const std::uint32_t* entry = fluid.near.of(thread_index());
-  for (std::uint32_t k = 0; k < found; ++k, entry += 32) f(*entry);
+  std::uint32_t next = found ? *entry : 0;
+  for (std::uint32_t k = 0; k < found; ++k) {
+    const std::uint32_t j = next;
+    entry += 32;
+    if (k + 1 < found) next = *entry;
+    f(j);
+  }
 }
 
 /// How a kernel comes to a particle's neighbours: f(j) for each, or for the thread's share of them.

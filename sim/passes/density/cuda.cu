@@ -84,8 +84,7 @@ __global__ __launch_bounds__(kThreads, stresses ? kBlocksWithStress : 0) void co
   // candidate what one of its threads needs done.
   std::uint32_t found = 0;
   std::uint32_t* entry = fluid.near.of(thread_index());
-  for_neighbors<Team>(c.grid, fluid.cells, cell, [&](std::uint32_t j) {
-    const float4 y = __ldg(fluid.state.x + j);
+  for_positions<Team>(c.grid, fluid.cells, fluid.state.x, cell, [&](std::uint32_t j, const float4& y) {
     const float dx = x.x - y.x;
     const float dy = x.y - y.y;
     const float dz = x.z - y.z;
@@ -100,9 +99,9 @@ __global__ __launch_bounds__(kThreads, stresses ? kBlocksWithStress : 0) void co
     const float dy = x.y - y.y;
     const float dz = x.z - y.z;
     if (dx * dx + dy * dy + dz * dz >= h * h) return;
-    const float* v = reinterpret_cast<const float*>(fluid.state.v + j);
-    add_fluid_neighbor<Kernel>(dx, dy, dz, v[0], v[1], v[2], h, 1.0f, sum);
-    if constexpr (flows) add_flow<Kernel>({dx, dy, dz}, {v[0], v[1], v[2]}, h, flow);
+    const float4 v = fluid.state.v[j];
+    add_fluid_neighbor<Kernel>(dx, dy, dz, v.x, v.y, v.z, h, 1.0f, sum);
+    if constexpr (flows) add_flow<Kernel>({dx, dy, dz}, {v.x, v.y, v.z}, h, flow);
   });
   Symmetric<float> by_fluid = sum.moment;
   float no_slip = 0.0f;  // Σ d² (−W'/r) V of no-slip walls
