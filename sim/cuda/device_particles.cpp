@@ -69,9 +69,9 @@ void FluidBuffers::allocate(std::size_t count, const RunConstants& constants, Ca
   if (needs(constants.plan, ColumnNeed::kCorrected)) {
     const std::uint32_t lanes = tensor_lanes(static_cast<std::uint32_t>(count));
     // A team's rows of cells do not share out evenly.
-    const std::uint32_t room = row_room(constants.plan) / lanes + (lanes > 1 ? 4 : 0);
+    const std::uint32_t room = row_room(constants.plan) / lanes / 4 * 4 + (lanes > 1 ? 8 : 0);
     const std::size_t threads = (count * lanes + 127) / 128 * 128;
-    near_.allocate(threads * room, check);
+    near_.allocate(threads * room / 4, check);
     near_counts_.allocate(threads, check);
     view_.near = {room, near_.data(), near_counts_.data()};
   }

@@ -13,8 +13,8 @@ StepConstants step_constants(const RunConstants& constants);
 class SortSpace {
  public:
   void allocate(std::uint32_t largest_count, std::uint32_t retired, CallCheck& check);
-  /// Where each cell will begin, to `cells`; what is left is to bring each to its place. `some_out`: `cells` is
-  /// of the sort before, whose last particles are out.
+  /// Where each cell will begin, to `cells`; what is left is to bring each to its place. `some_out`: `cells`
+  /// is of the sort before, whose last particles are out.
   void find_cells(const std::uint32_t* keys, std::uint32_t count, bool some_out, CellTable cells,
                   CallCheck& check, cudaStream_t stream);
   SortView view() const { return {counts_.data(), tickets_.data(), came_.data()}; }
@@ -52,8 +52,9 @@ class FluidBuffers {
   DeviceBuffer<float4> passed_x_, passed_y_, passed_z_;  // kFluidStress
   DeviceBuffer<float> left_;                             // kFluidStress
   DeviceBuffer<std::uint32_t> starts_;                   // of cells
-  DeviceBuffer<std::uint32_t> near_, near_counts_;
-  bool some_out_ = false;                                // since write(), these are sorted
+  DeviceBuffer<uint4> near_;
+  DeviceBuffer<std::uint32_t> near_counts_;
+  bool some_out_ = false;  // since write(), these are sorted
   SortedFluid view_;
 };
 

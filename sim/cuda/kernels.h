@@ -32,8 +32,8 @@ struct StepConstants {
   CorrectionConstants correction;
 };
 
-/// Where each cell's particles begin in sorted order; the next cell's begin where they end. One more than cells:
-/// the last says where those begin that are out of the domain.
+/// Where each cell's particles begin in sorted order; the next cell's begin where they end. One more than
+/// cells: the last says where those begin that are out of the domain.
 struct CellTable {
   std::uint32_t* start = nullptr;
 };
@@ -91,15 +91,15 @@ using DevicePointer = T*;
 /// Fluid particles (and probes) in some order.
 using FluidView = MovingPacks<DevicePointer>;
 
-/// The fluid that each thread of the density pass found in reach, for the force pass's thread of the same particle.
-/// Entry k of a warp's 32 threads is one run of memory.
+/// The fluid that each thread of the density pass found in reach, for the force pass's thread of the same
+/// particle. Four entries of each of a warp's 32 threads are one run of memory.
 struct NearLists {
-  std::uint32_t room = 0;  ///< entries a thread; who has more walks the cells anew
-  std::uint32_t* entries = nullptr;
+  std::uint32_t room = 0;  ///< entries a thread, a multiple of 4; who has more walks the cells anew
+  uint4* entries = nullptr;
   std::uint32_t* counts = nullptr;  ///< found, written down or not
 
-  SLOSH_HD std::uint32_t* of(std::uint32_t thread) const {
-    return entries + (std::size_t{thread / 32} * room * 32 + thread % 32);
+  SLOSH_HD uint4* of(std::uint32_t thread) const {
+    return entries + (std::size_t{thread / 32} * (room / 4) * 32 + thread % 32);
   }
 };
 
@@ -202,8 +202,8 @@ struct DeviceWrench {
 cudaError_t exclusive_sum(void* temp, std::size_t& temp_bytes, const std::uint32_t* counts,
                           std::uint32_t* starts, std::uint32_t count, cudaStream_t stream);
 
-/// order.cu. Counts keys and gives tickets; who was out already, at `*out_before` and behind, keeps its place.
-/// `out_before`: null where nobody was.
+/// order.cu. Counts keys and gives tickets; who was out already, at `*out_before` and behind, keeps its
+/// place. `out_before`: null where nobody was.
 void launch_count_keys(const std::uint32_t* keys, std::uint32_t count, std::uint32_t retired,
                        const std::uint32_t* out_before, const SortView& sort, cudaStream_t stream);
 /// Notes who came from where. `start`: of the counts.

@@ -16,8 +16,8 @@ __global__ void count_keys_kernel(const std::uint32_t* keys, std::uint32_t count
   sort.tickets[p] = stays ? kStays : atomicAdd(sort.counts + key, 1u);
 }
 
-__global__ void note_sources_kernel(const std::uint32_t* keys, std::uint32_t count, const std::uint32_t* start,
-                                    SortView sort) {
+__global__ void note_sources_kernel(const std::uint32_t* keys, std::uint32_t count,
+                                    const std::uint32_t* start, SortView sort) {
   const std::uint32_t p = thread_index();
   if (p < count && sort.tickets[p] != kStays) sort.came[start[keys[p]] + sort.tickets[p]] = p;
 }

@@ -95,19 +95,19 @@ __device__ inline void for_positions(const CellGrid& grid, const CellTable& cell
   }
 }
 
-/// Calls f(j) for what the density pass found, or the thread's share of it, in the same order; f sees to it that more
-/// than that does no harm.
+/// Calls f(j) for what the density pass found, or the thread's share of it, in the same order; f sees to it
+/// that more than that does no harm.
 template <class Team, class F>
 __device__ inline void for_listed(const CellGrid& grid, const SortedFluid& fluid, std::uint32_t cell,
                                   std::uint32_t found, F&& f) {
   if (found > fluid.near.room) return for_neighbors<Team>(grid, fluid.cells, cell, f);
-  const std::uint32_t* entry = fluid.near.of(thread_index());
-  std::uint32_t next = found ? *entry : 0;
-  for (std::uint32_t k = 0; k < found; ++k) {
-    const std::uint32_t j = next;
-    entry += 32;
-    if (k + 1 < found) next = *entry;
-    f(j);
+  const uint4* entry = fluid.near.of(thread_index());
+  for (std::uint32_t k = 0; k < found; k += 4, entry += 32) {
+    const uint4 four = *entry;
+    f(four.x);
+    if (k + 1 < found) f(four.y);
+    if (k + 2 < found) f(four.z);
+    if (k + 3 < found) f(four.w);
   }
 }
 

@@ -80,20 +80,33 @@ __global__ __launch_bounds__(kThreads, stresses ? kBlocksWithStress : 0) void co
   const float h = c.support_radius;
   Neighborhood<float> sum{};
   FlowSums<float> flow{};
-  // Of 216 candidates 34 are in reach. Written down first: summed as they are found, a warp would do for nearly each
-  // candidate what one of its threads needs done.
+  // Of 216 candidates 34 are in reach. Written down first: summed as they are found, a warp would do for
+  // nearly each candidate what one of its threads needs done.
   std::uint32_t found = 0;
-  std::uint32_t* entry = fluid.near.of(thread_index());
+  uint4* entry = fluid.near.of(thread_index());
+  uint4 last{};
+  const auto write_down = [&](std::uint32_t j) {
+    if constexpr (Team::kLanes > 1) {  // a small world waits for memory, not for its width
+      if (found < fluid.near.room) reinterpret_cast<std::uint32_t*>(entry + found / 4 * 32)[found % 4] = j;
+      ++found;
+    } else {  // four as cheaply as one
+      last = make_uint4(last.y, last.z, last.w, j);
+      if (++found % 4 != 0) return;
+      if (found <= fluid.near.room) *entry = last;
+      entry += 32;
+    }
+  };
   for_positions<Team>(c.grid, fluid.cells, fluid.state.x, cell, [&](std::uint32_t j, const float4& y) {
     const float dx = x.x - y.x;
     const float dy = x.y - y.y;
     const float dz = x.z - y.z;
     if (dx * dx + dy * dy + dz * dz >= h * h) return;
-    if (found < fluid.near.room) entry[32 * found] = j;
-    ++found;
+    write_down(j);
   });
-  fluid.near.counts[thread_index()] = found;
-  for_listed<Team>(c.grid, fluid, cell, found, [&](std::uint32_t j) {
+  const std::uint32_t in_reach = found;
+  while (Team::kLanes == 1 && found % 4 != 0) write_down(p);
+  fluid.near.counts[thread_index()] = in_reach;
+  for_listed<Team>(c.grid, fluid, cell, in_reach, [&](std::uint32_t j) {
     const float4 y = __ldg(fluid.state.x + j);
     const float dx = x.x - y.x;
     const float dy = x.y - y.y;
