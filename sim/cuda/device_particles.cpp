@@ -65,8 +65,6 @@ void FluidBuffers::allocate(std::size_t count, const RunConstants& constants, Ca
     push_a_.allocate(count, check);
     push_b_.allocate(count, check);
     drag_z_.allocate(count, check);
-  }
-  if (needs(constants.plan, ColumnNeed::kCorrected)) {
     const std::uint32_t lanes = tensor_lanes(static_cast<std::uint32_t>(count));
     // A team's rows of cells do not share out evenly.
     const std::uint32_t room = row_room(constants.plan) / lanes / 4 * 4 + (lanes > 1 ? 8 : 0);
