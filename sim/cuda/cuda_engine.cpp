@@ -102,8 +102,8 @@ class CudaEngine final : public ParticleEngine {
     const HostPacks packs = fetch_packs(s_.fluid, s_.check, s_.stream);
     impulses = fetch_impulses(s_.clamps, s_.check, s_.stream);
     if (s_.check.failed()) return false;
-    to_state(packs, s_.constants.grid, out);
-    out.broken = broken_before_ + broken(packs, s_.constants.grid);
+    to_state(packs, s_.step.grid, s_.constants.grid, out);
+    out.broken = broken_before_ + broken(packs, s_.step.grid);
     return true;
   }
 
@@ -114,8 +114,9 @@ class CudaEngine final : public ParticleEngine {
       const std::uint32_t id = state.id[p];
       if (id >= s_.fluid_count) slots[id - s_.fluid_count] = static_cast<std::uint32_t>(p);
     }
-    const HostPacks packs = from_state(state, s_.constants.grid, s_.constants.rest_volume, kinds_by_id_);
-    const std::uint64_t among_them = broken(packs, s_.constants.grid);  // that the sort has not taken out yet
+    const HostPacks packs =
+        from_state(state, s_.constants.grid, s_.step.grid, s_.constants.rest_volume, kinds_by_id_);
+    const std::uint64_t among_them = broken(packs, s_.step.grid);  // that the sort has not taken out yet
     broken_before_ = state.broken - std::min(state.broken, among_them);
     s_.check.ok(cudaStreamSynchronize(s_.stream), "waiting for the step");
     s_.fluid.write(packs, s_.check, s_.stream);
@@ -150,7 +151,7 @@ class CudaEngine final : public ParticleEngine {
 
   void add_to(Fingerprint& print) const override {
     const HostPacks packs = fetch_packs(s_.fluid, s_.check, s_.stream);
-    for_each_present(packs, s_.constants.grid, [&](std::size_t p) {
+    for_each_present(packs, s_.step.grid, [&](std::size_t p) {
       print.add(packs.id[p]);
       for_each_value(packs, p, [&](auto column, const auto& value) {
         if constexpr (info(column).hashed && column != FluidColumn::id) print.add(value);
@@ -161,12 +162,12 @@ class CudaEngine final : public ParticleEngine {
   Diagnostics diagnostics() const override {
     FluidSums sums(s_.constants);
     const HostPacks packs = fetch_packs(s_.fluid, s_.check, s_.stream);
-    for_each_present(packs, s_.constants.grid, [&](std::size_t p) {
+    for_each_present(packs, s_.step.grid, [&](std::size_t p) {
       const float4 x = packs.x[p], v = packs.v[p];
       sums.add(packs.kind[p], {x.x, x.y, x.z}, {v.x, v.y, v.z}, v.w);
     });
     sums.add(fetch_impulses(s_.clamps, s_.check, s_.stream));
-    return sums.finish(s_.fluid_count, broken_before_ + broken(packs, s_.constants.grid));
+    return sums.finish(s_.fluid_count, broken_before_ + broken(packs, s_.step.grid));
   }
 
   const StepTimes* times() const override { return &s_.clock.times(); }

@@ -1,5 +1,6 @@
 #include "sim/cuda/device_particles.h"
 
+#include <array>
 #include <vector>
 
 #include "sim/cuda/solve_rows.h"
@@ -7,7 +8,7 @@
 namespace slosh::cuda {
 
 StepConstants step_constants(const RunConstants& c) {
-  return {c.grid,
+  return {c.grid.sliced(kSlices),
           c.support_radius,
           c.force_scale,
           c.drag_shape,
@@ -48,35 +49,48 @@ FluidView view_of(const MovingPacks<DeviceBuffer>& packs) {
   return view;
 }
 
+// Farther than any particle, and near enough for its square to be finite.
+void put_far(float4* places, CallCheck& check) {
+  std::array<float4, kNobodies> nobodies;
+  nobodies.fill({1e18f, 1e18f, 1e18f, 0.0f});
+  if (!check.failed())
+    check.ok(cudaMemcpy(places, nobodies.data(), sizeof nobodies, cudaMemcpyHostToDevice), "upload");
+}
+
 }  // namespace
 
-void FluidBuffers::allocate(std::size_t count, const RunConstants& constants, CallCheck& check) {
+void FluidBuffers::allocate(std::size_t count, const RunConstants& constants, std::uint32_t retired,
+                            CallCheck& check) {
+  const std::size_t with_nobodies = count + kNobodies;
   for (MovingPacks<DeviceBuffer>& packs : packs_)
     for_each_pack(
         [&](auto pack, auto& buffer) {
           if (pack != Pack::kSolved || needs(constants.plan, ColumnNeed::kSolved))
-            buffer.allocate(count, check);
+            buffer.allocate(with_nobodies, check);
         },
         packs);
-  pressed_.allocate(count, check);
+  pressed_.allocate(with_nobodies, check);
+  for (float4* places : {packs_[0].x.data(), packs_[1].x.data(), pressed_.data()})
+    put_far(places + count, check);
   force_.allocate(count, check);
-  starts_.allocate(constants.grid.cell_count() + 1, check);
+  starts_.allocate(retired + 1, check);
   if (needs(constants.plan, ColumnNeed::kCorrected)) {
-    push_a_.allocate(count, check);
-    push_b_.allocate(count, check);
-    drag_z_.allocate(count, check);
+    push_a_.allocate(with_nobodies, check);
+    push_b_.allocate(with_nobodies, check);
+    drag_z_.allocate(with_nobodies, check);
     const std::uint32_t lanes = tensor_lanes(static_cast<std::uint32_t>(count));
     // A team's rows of cells do not share out evenly.
-    const std::uint32_t room = row_room(constants.plan) / lanes / 4 * 4 + (lanes > 1 ? 8 : 0);
+    const std::uint32_t room = row_room(constants.plan) / lanes / kListed * kListed + (lanes > 1 ? 8 : 0);
     const std::size_t threads = (count * lanes + 127) / 128 * 128;
-    near_.allocate(threads * room / 4, check);
+    near_.allocate((threads + 32) * room, check);  // what is read ahead of a list's end is nobody's
     near_counts_.allocate(threads, check);
     view_.near = {room, near_.data(), near_counts_.data()};
   }
   if (needs(constants.plan, ColumnNeed::kSolved)) expansion_.allocate(count, check);
   if (constants.plan.passes_stress) {
-    for (DeviceBuffer<float4>* rows : {&passed_x_, &passed_y_, &passed_z_}) rows->allocate(count, check);
-    left_.allocate(count, check);
+    for (DeviceBuffer<float4>* rows : {&passed_x_, &passed_y_, &passed_z_})
+      rows->allocate(with_nobodies, check);
+    left_.allocate(with_nobodies, check);
   }
   view_.count = static_cast<std::uint32_t>(count);
   view_.state = view_of(packs_[current_]);
@@ -96,7 +110,7 @@ void FluidBuffers::allocate(std::size_t count, const RunConstants& constants, Ca
 
 void FluidBuffers::allow_viscosities(const RunConstants& constants, CallCheck& check) {
   if (!constants.plan.has(PassId::kPairViscosity) || viscosity_.size() > 0) return;
-  viscosity_.allocate(count(), check);
+  viscosity_.allocate(count() + kNobodies, check);
   view_.viscosity = viscosity_.data();
 }
 
@@ -121,7 +135,7 @@ void FluidBuffers::sort(const StepConstants& constants, SortSpace& space, CallCh
   check.launched("gathering fluid");
 }
 
-void SurfaceBuffers::allocate(const std::vector<SurfaceParticle>& particles, const RunConstants& constants,
+void SurfaceBuffers::allocate(const std::vector<SurfaceParticle>& particles, std::uint32_t retired,
                               CallCheck& check) {
   const std::uint32_t count = static_cast<std::uint32_t>(particles.size());
   if (count == 0) return;
@@ -148,7 +162,7 @@ void SurfaceBuffers::allocate(const std::vector<SurfaceParticle>& particles, con
   viscosity_.allocate(count, check);
   sorted_reach_.allocate(count, check);
   sorted_body_.allocate(count, check);
-  starts_.allocate(constants.grid.cell_count() + 1, check);
+  starts_.allocate(retired + 1, check);
   local_view_ = {count,         position_.data(), material_.data(), reach_.data(),
                  body_.data(),  placed_.data(),   velocity_.data(), key_.data(),
                  force_.data(), couple_.data(),   drag_a_.data(),   drag_b_.data()};

@@ -6,6 +6,9 @@
 
 namespace slosh::cuda {
 
+/// Of a cell across x.
+inline constexpr std::uint32_t kSlices = 4;
+
 /// What of them the kernels need.
 StepConstants step_constants(const RunConstants& constants);
 
@@ -28,7 +31,8 @@ class SortSpace {
 /// Fluid particles, and a second set of packs that a sort gathers to.
 class FluidBuffers {
  public:
-  void allocate(std::size_t count, const RunConstants& constants, CallCheck& check);
+  /// `retired`: the key of who is out, in StepConstants::grid.
+  void allocate(std::size_t count, const RunConstants& constants, std::uint32_t retired, CallCheck& check);
   /// Brings the particles into the order of their cells.
   void sort(const StepConstants& constants, SortSpace& space, CallCheck& check, cudaStream_t stream);
 
@@ -52,8 +56,7 @@ class FluidBuffers {
   DeviceBuffer<float4> passed_x_, passed_y_, passed_z_;  // kFluidStress
   DeviceBuffer<float> left_;                             // kFluidStress
   DeviceBuffer<std::uint32_t> starts_;                   // of cells
-  DeviceBuffer<uint4> near_;
-  DeviceBuffer<std::uint32_t> near_counts_;
+  DeviceBuffer<std::uint32_t> near_, near_counts_;
   bool some_out_ = false;  // since write(), these are sorted
   SortedFluid view_;
 };
@@ -61,8 +64,7 @@ class FluidBuffers {
 /// The surface particles of all fixed or of all free bodies.
 class SurfaceBuffers {
  public:
-  void allocate(const std::vector<SurfaceParticle>& particles, const RunConstants& constants,
-                CallCheck& check);
+  void allocate(const std::vector<SurfaceParticle>& particles, std::uint32_t retired, CallCheck& check);
   void place(const StepConstants& constants, const DeviceBody* bodies, SortSpace& space, CallCheck& check,
              cudaStream_t stream);
 

@@ -15,20 +15,21 @@ std::uint64_t broken(const HostPacks& packs, const CellGrid& grid) {
   return count;
 }
 
-void to_state(const HostPacks& packs, const CellGrid& grid, ParticleState& out) {
+void to_state(const HostPacks& packs, const CellGrid& grid, const CellGrid& world, ParticleState& out) {
   out.resize(packs.id.size());
   std::size_t count = 0;
   for_each_present(packs, grid, [&](std::size_t p) {
     for_each_value(packs, p, [&](auto column, const auto& value) {
       if constexpr (info(column).saved) column_of<column>(out)[count] = value;
     });
+    out.key[count] = world.cell_of(packs.x[p].x, packs.x[p].y, packs.x[p].z);
     ++count;
   });
   out.resize(count);
 }
 
-HostPacks from_state(const ParticleState& state, const CellGrid& grid, float rest_volume,
-                     const std::vector<std::uint8_t>& kinds_by_id) {
+HostPacks from_state(const ParticleState& state, const CellGrid& world, const CellGrid& grid,
+                     float rest_volume, const std::vector<std::uint8_t>& kinds_by_id) {
   const std::size_t total = kinds_by_id.size();
   HostPacks packs;
   for_each_pack([total](auto, auto& values) { values.resize(total); }, packs);
@@ -37,6 +38,8 @@ HostPacks from_state(const ParticleState& state, const CellGrid& grid, float res
     for_each_value(packs, p, [&](auto column, auto& value) {
       if constexpr (info(column).saved) value = column_of<column>(state)[p];
     });
+    const float4 x = packs.x[p];
+    packs.key[p] = state.key[p] >= world.retired_key() ? grid.retired_key() : grid.cell_of(x.x, x.y, x.z);
     seen[state.id[p]] = true;
   }
   std::size_t behind = state.size();

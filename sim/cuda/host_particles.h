@@ -44,11 +44,12 @@ void for_each_present(const HostPacks& packs, const CellGrid& grid, F&& f) {
 /// Of those that are not, how many stopped where nothing is finite. Where a particle left is kept with it.
 std::uint64_t broken(const HostPacks& packs, const CellGrid& grid);
 
-/// The columns that a saved world holds, of the particles that are still in it.
-void to_state(const HostPacks& packs, const CellGrid& grid, ParticleState& out);
+/// The columns that a saved world holds, of the particles that are still in it. Their cells are those of
+/// `grid` on the GPU, of `world` in `out`.
+void to_state(const HostPacks& packs, const CellGrid& grid, const CellGrid& world, ParticleState& out);
 /// The reverse: those that `state` lacks come last, retired, at `rest_volume`. `kinds_by_id` has one entry a
 /// particle, in the world or not.
-HostPacks from_state(const ParticleState& state, const CellGrid& grid, float rest_volume,
-                     const std::vector<std::uint8_t>& kinds_by_id);
+HostPacks from_state(const ParticleState& state, const CellGrid& world, const CellGrid& grid,
+                     float rest_volume, const std::vector<std::uint8_t>& kinds_by_id);
 
 }  // namespace slosh::cuda

@@ -20,7 +20,7 @@ namespace slosh::cuda {
 
 /// RunConstants as the kernels need it.
 struct StepConstants {
-  CellGrid grid;
+  CellGrid grid;  ///< the world's, sliced
   float support_radius = 0.0f;
   float force_scale = 0.0f;
   DragShape<float> drag_shape{1.0f, 0.0f};
@@ -92,16 +92,22 @@ using DevicePointer = T*;
 using FluidView = MovingPacks<DevicePointer>;
 
 /// The fluid that each thread of the density pass found in reach, for the force pass's thread of the same
-/// particle. Four entries of each of a warp's 32 threads are one run of memory.
+/// particle. An entry of each of a warp's 32 threads is one run of memory.
 struct NearLists {
-  std::uint32_t room = 0;  ///< entries a thread, a multiple of 4; who has more walks the cells anew
-  uint4* entries = nullptr;
+  std::uint32_t room = 0;  ///< entries a thread, a multiple of kListed; who has more walks the cells anew
+  std::uint32_t* entries = nullptr;
   std::uint32_t* counts = nullptr;  ///< found, written down or not
 
-  SLOSH_HD uint4* of(std::uint32_t thread) const {
-    return entries + (std::size_t{thread / 32} * (room / 4) * 32 + thread % 32);
+  SLOSH_HD std::uint32_t* of(std::uint32_t thread) const {
+    return entries + (std::size_t{thread / 32} * room * 32 + thread % 32);
   }
 };
+/// Entries that are read at a time; lists are filled up to a multiple.
+inline constexpr std::uint32_t kListed = 4;
+
+/// Entries behind the last particle's of what is read of neighbours: zero, and far from everywhere, so that a
+/// kernel may read beyond a row, and lists be filled up to a multiple of four.
+inline constexpr std::uint32_t kNobodies = 16;
 
 /// Sorted fluid with what the passes of a step add.
 struct SortedFluid {

@@ -10,7 +10,7 @@ inline constexpr int kThreads = 128;
 /// How many blocks a multiprocessor holds at least of kernels with particle stresses: 64 registers a thread.
 /// By itself the compiler takes 71 to 80, and a step of a million particles a fifth longer
 /// (tests/bench/results/2026-11-27-passed-steps-h100.csv).
-inline constexpr int kBlocksWithStress = 8;
+inline constexpr int kBlocksOfTensors = 8;
 
 inline unsigned blocks_for(std::uint32_t count, int threads = kThreads) {
   return (count + static_cast<unsigned>(threads) - 1) / static_cast<unsigned>(threads);
@@ -63,57 +63,83 @@ inline constexpr TeamSizes kTensorTeams{100'000, 0};
 inline constexpr TeamSizes kDensityTeams{50'000, 100'000};
 inline constexpr TeamSizes kForceTeams{100'000, 700'000};
 
-/// Calls f(j) for every particle in the 27 cells around `cell`, in memory's order, or the thread's share of
+/// Particles [begin, end) in sorted order.
+struct RowRange {
+  std::uint32_t begin, end;
+};
+/// Those of the n-th row around `cell`.
+__device__ inline RowRange row_of(const CellGrid& grid, const CellTable& cells, std::uint32_t cell,
+                                  std::uint32_t n) {
+  const std::uint32_t* first = cells.start + grid.row_around(cell, n);
+  return {__ldg(first), __ldg(first + grid.row_cells())};
+}
+
+/// Calls f(j) for every particle in the nine rows around `cell`, in memory's order, or the thread's share of
 /// them.
 template <class Team = Alone, class F>
 __device__ inline void for_neighbors(const CellGrid& grid, const CellTable& cells, std::uint32_t cell,
                                      F&& f) {
   for (std::uint32_t n = 0; n < 9; ++n) {
-    const std::uint32_t first = grid.row_around(cell, n);
-    const std::uint32_t begin = __ldg(cells.start + first);
-    const std::uint32_t end = __ldg(cells.start + first + 3);
-    for (std::uint32_t j = begin + Team::lane(); j < end; j += Team::kLanes) f(j);
+    const RowRange row = row_of(grid, cells, cell, n);
+    for (std::uint32_t j = row.begin + Team::lane(); j < row.end; j += Team::kLanes) f(j);
   }
 }
 
-/// As for_neighbors() f(j, x[j]), four loaded at a time: a thread waits for memory once in four.
-template <class Team, class F>
-__device__ inline void for_positions(const CellGrid& grid, const CellTable& cells, const float4* x,
-                                     std::uint32_t cell, F&& f) {
-  constexpr std::uint32_t kAtOnce = 4;
+/// As for_neighbors() f(j) for those of whom beyond(x[j]) is negative. Four are loaded at a time, of which
+/// the last may be beyond the row (kNobodies): a thread waits for memory once in four. They are marked first:
+/// a warp would do for nearly each candidate what is to be done for one of its threads.
+template <class Team, class Beyond, class F>
+__device__ inline void for_near(const CellGrid& grid, const CellTable& cells, const float4* x,
+                                std::uint32_t cell, Beyond&& beyond, F&& f) {
+  constexpr std::uint32_t kAtOnce = 4, kMarked = 32;
+  RowRange next = row_of(grid, cells, cell, 0);
+#pragma unroll 1
   for (std::uint32_t n = 0; n < 9; ++n) {
-    const std::uint32_t first = grid.row_around(cell, n);
-    const std::uint32_t begin = __ldg(cells.start + first);
-    const std::uint32_t end = __ldg(cells.start + first + 3);
-    for (std::uint32_t j = begin + Team::lane(); j < end; j += kAtOnce * Team::kLanes) {
-      float4 at[kAtOnce];
-      for (std::uint32_t i = 0; i < kAtOnce; ++i) at[i] = __ldg(x + min(j + i * Team::kLanes, end - 1));
-      for (std::uint32_t i = 0; i < kAtOnce; ++i) {
-        if (j + i * Team::kLanes < end) f(j + i * Team::kLanes, at[i]);
+    const RowRange row = next;
+    if (n < 8) next = row_of(grid, cells, cell, n + 1);  // it comes while this one is looked at
+    for (std::uint32_t base = row.begin + Team::lane(); base < row.end; base += kMarked * Team::kLanes) {
+      const std::uint32_t left = min((row.end - base + Team::kLanes - 1) / Team::kLanes, kMarked);
+      std::uint32_t marks = 0, marked = 0;  // the first is the highest bit
+      const float4* at = x + base;
+#pragma unroll 1
+      for (; marked < left; marked += kAtOnce, at += kAtOnce * Team::kLanes) {
+        float4 y[kAtOnce];
+        for (std::uint32_t i = 0; i < kAtOnce; ++i) y[i] = __ldg(at + i * Team::kLanes);
+        for (std::uint32_t i = 0; i < kAtOnce; ++i)
+          marks = __funnelshift_l(__float_as_uint(beyond(y[i])), marks, 1);
+      }
+      marks &= ~0u << (marked - left);
+      while (marks) {
+        const auto bit = 31u - static_cast<std::uint32_t>(__clz(static_cast<int>(marks)));
+        marks ^= 1u << bit;
+        f(base + (marked - 1 - bit) * Team::kLanes);
       }
     }
   }
 }
 
-/// Calls f(j) for what the density pass found, or the thread's share of it, in the same order; f sees to it
-/// that more than that does no harm.
+/// Calls f(j) for what the density pass found, or the thread's share of it, in the same order. Calls it for
+/// others, too, who are out of reach: their kernel is 0.
 template <class Team, class F>
 __device__ inline void for_listed(const CellGrid& grid, const SortedFluid& fluid, std::uint32_t cell,
                                   std::uint32_t found, F&& f) {
   if (found > fluid.near.room) return for_neighbors<Team>(grid, fluid.cells, cell, f);
-  const uint4* entry = fluid.near.of(thread_index());
-  for (std::uint32_t k = 0; k < found; k += 4, entry += 32) {
-    const uint4 four = *entry;
-    f(four.x);
-    if (k + 1 < found) f(four.y);
-    if (k + 2 < found) f(four.z);
-    if (k + 3 < found) f(four.w);
+  const std::uint32_t* entry = fluid.near.of(thread_index());
+  std::uint32_t j[kListed], next[kListed];
+  for (std::uint32_t i = 0; i < kListed; ++i) next[i] = entry[32 * i];
+#pragma unroll 1
+  for (std::uint32_t k = 0; k < found; k += kListed) {
+    entry += 32 * kListed;
+    for (std::uint32_t i = 0; i < kListed; ++i) j[i] = next[i];
+    for (std::uint32_t i = 0; i < kListed; ++i) next[i] = entry[32 * i];  // they come while f() is at work
+    for (std::uint32_t i = 0; i < kListed; ++i) f(j[i]);
   }
 }
 
 /// How a kernel comes to a particle's neighbours: f(j) for each, or for the thread's share of them.
 template <class Team>
 struct CellWalk {
+  static constexpr bool kListed = false;
   const CellGrid& grid;
   const CellTable& cells;
   std::uint32_t cell;
@@ -124,6 +150,7 @@ struct CellWalk {
 };
 template <class Team>
 struct ListWalk {
+  static constexpr bool kListed = true;
   const CellGrid& grid;
   const SortedFluid& fluid;
   std::uint32_t cell;
@@ -133,12 +160,12 @@ struct ListWalk {
   }
 };
 
-/// Whether there is any particle in the 27 cells around `cell`.
+/// Whether there is any particle in the nine rows around `cell`.
 __device__ inline bool any_near(const CellGrid& grid, const CellTable& cells, std::uint32_t cell) {
   bool any = false;
   for (std::uint32_t n = 0; n < 9; ++n) {
-    const std::uint32_t first = grid.row_around(cell, n);
-    any |= __ldg(cells.start + first) != __ldg(cells.start + first + 3);
+    const RowRange row = row_of(grid, cells, cell, n);
+    any |= row.begin != row.end;
   }
   return any;
 }

@@ -12,11 +12,12 @@ CudaState::CudaState(const RunConstants& constants_in, const ParticleStart& star
       fluid_count(start.fluid_count) {
   check.ok(cudaStreamCreateWithFlags(&stream, cudaStreamNonBlocking), "cudaStreamCreate");
   clock.start(check);
-  fluid.allocate(start.particles.kind.size(), constants, check);
-  fixed.allocate(start.fixed, constants, check);
-  moving.allocate(start.moving, constants, check);
+  const std::uint32_t retired = step.grid.retired_key();
+  fluid.allocate(start.particles.kind.size(), constants, retired, check);
+  fixed.allocate(start.fixed, retired, check);
+  moving.allocate(start.moving, retired, check);
   const std::size_t largest = std::max({start.particles.size(), start.fixed.size(), start.moving.size()});
-  space.allocate(static_cast<std::uint32_t>(largest), constants.grid.retired_key(), check);
+  space.allocate(static_cast<std::uint32_t>(largest), retired, check);
   kinds.upload(constants.kinds, check);
   sums.plan(constants.plan, start, bodies.size(), check);
   clamps.plan(constants, start, bodies.size(), check);

@@ -1,8 +1,8 @@
 // The grid of cells that particles are sorted by: geometry alone, for both backends.
 //
-// Cells are cubes of at least the support radius, x fastest. Once particles are sorted by cell, the three
-// cells (x−1, x, x+1) of a row are one contiguous run of particles: a particle's neighbours lie in nine such
-// rows.
+// Cells are cubes of at least the support radius, x fastest, or slices of such cubes across x. Once particles
+// are sorted by cell, those of a row that are near enough in x are one contiguous run of particles: a
+// particle's neighbours lie in nine such rows.
 #pragma once
 
 #include <cstdint>
@@ -28,11 +28,20 @@ class CellGrid {
       return n.x * n.y * n.z;
     };
     while (count_at(cell) > kMaxCells) cell *= 1.1;
-    inverse_cell_ = static_cast<float>(1.0 / cell);
+    inverse_cell_ = glm::vec3(static_cast<float>(1.0 / cell));
     cells_ = glm::uvec3(glm::floor(extent / cell) + 3.0);
   }
+  /// The same cells, each in up to `slices` across x: a row's run is shorter by up to a quarter.
+  CellGrid sliced(std::uint32_t slices) const {
+    CellGrid grid = *this;
+    while (slices > 1 && static_cast<double>(cell_count()) * slices > kMaxSlices) slices /= 2;
+    grid.inverse_cell_.x *= static_cast<float>(slices);
+    grid.cells_.x *= slices;
+    grid.slices_ = slices;
+    return grid;
+  }
 
-  static constexpr double kMaxCells = 4.0e6;
+  static constexpr double kMaxCells = 4.0e6, kMaxSlices = 1.6e7;
 
   /// True when the position is finite and inside the covered box.
   SLOSH_HD bool contains(float x, float y, float z) const {
@@ -41,24 +50,27 @@ class CellGrid {
   /// The cell of a position; positions outside count to the nearest cell.
   SLOSH_HD std::uint32_t cell_of(float x, float y, float z) const {
     const glm::vec3 p = glm::clamp(glm::vec3(x, y, z), lower_, upper_);
-    const glm::uvec3 c = glm::uvec3((p - lower_) * inverse_cell_) + 1u;
+    const glm::uvec3 c = glm::uvec3((p - lower_) * inverse_cell_) + glm::uvec3(slices_, 1, 1);
     return c.x + cells_.x * (c.y + cells_.y * c.z);
   }
   SLOSH_HD std::uint32_t cell_count() const { return cells_.x * cells_.y * cells_.z; }
   /// Key of a particle that is out of the world: sorts behind all cells.
   SLOSH_HD std::uint32_t retired_key() const { return cell_count(); }
-  /// First cell (x−1) of the n-th of the nine rows around `cell`; n is 0–8, y before z.
+  /// How many cells of a row may hold neighbours: one, and `slices` on either side.
+  SLOSH_HD std::uint32_t row_cells() const { return 2 * slices_ + 1; }
+  /// The first of them in the n-th of the nine rows around `cell`; n is 0–8, y before z.
   SLOSH_HD std::uint32_t row_around(std::uint32_t cell, std::uint32_t n) const {
     const std::uint32_t line = cells_.x;
     const std::uint32_t slab = cells_.x * cells_.y;
-    return cell - slab - line - 1 + (n / 3) * slab + (n % 3) * line;
+    return cell - slab - line - slices_ + (n / 3) * slab + (n % 3) * line;
   }
 
  private:
   glm::vec3 lower_{0.0f};
   glm::vec3 upper_{0.0f};
-  float inverse_cell_ = 1.0f;
+  glm::vec3 inverse_cell_{1.0f};
   glm::uvec3 cells_{3u};
+  std::uint32_t slices_ = 1;
 };
 
 }  // namespace slosh

@@ -68,7 +68,7 @@ __device__ void keep_passed(const SortedFluid& fluid, std::uint32_t p, const Sym
 // The corrected model's and, `solved`, the incompressible one's: sim/passes/density/cpu_corrected.cpp.
 // `flows`: artificial viscosity is needed, or `stresses`, the particle stress.
 template <class Team, bool solved, bool flows, bool stresses>
-__global__ __launch_bounds__(kThreads, stresses ? kBlocksWithStress : 0) void corrected_density_kernel(
+__global__ __launch_bounds__(kThreads, kBlocksOfTensors) void corrected_density_kernel(
     StepConstants c, const ParticleKind* kinds, SortedFluid fluid, SortedSurface fixed, SortedSurface moving,
     bool one_viscosity, bool viscosities, std::uint32_t* status) {
   using Kernel = ModelParts<ParticleModel::kCorrected>::DensityKernel;
@@ -80,38 +80,30 @@ __global__ __launch_bounds__(kThreads, stresses ? kBlocksWithStress : 0) void co
   const float h = c.support_radius;
   Neighborhood<float> sum{};
   FlowSums<float> flow{};
-  // Of 216 candidates 34 are in reach. Written down first: summed as they are found, a warp would do for
+  // Of 162 candidates 34 are in reach. Written down first: summed as they are found, a warp would do for
   // nearly each candidate what one of its threads needs done.
   std::uint32_t found = 0;
-  uint4* entry = fluid.near.of(thread_index());
-  uint4 last{};
+  std::uint32_t* entry = fluid.near.of(thread_index());
   const auto write_down = [&](std::uint32_t j) {
-    if constexpr (Team::kLanes > 1) {  // a small world waits for memory, not for its width
-      if (found < fluid.near.room) reinterpret_cast<std::uint32_t*>(entry + found / 4 * 32)[found % 4] = j;
-      ++found;
-    } else {  // four as cheaply as one
-      last = make_uint4(last.y, last.z, last.w, j);
-      if (++found % 4 != 0) return;
-      if (found <= fluid.near.room) *entry = last;
-      entry += 32;
-    }
+    if (found < fluid.near.room) *entry = j;
+    entry += 32;
+    ++found;
   };
-  for_positions<Team>(c.grid, fluid.cells, fluid.state.x, cell, [&](std::uint32_t j, const float4& y) {
+  const auto beyond = [&](const float4& y) {
     const float dx = x.x - y.x;
     const float dy = x.y - y.y;
     const float dz = x.z - y.z;
-    if (dx * dx + dy * dy + dz * dz >= h * h) return;
-    write_down(j);
-  });
+    return dx * dx + (dy * dy + (dz * dz - h * h));
+  };
+  for_near<Team>(c.grid, fluid.cells, fluid.state.x, cell, beyond, write_down);
   const std::uint32_t in_reach = found;
-  while (Team::kLanes == 1 && found % 4 != 0) write_down(p);
+  while (found % kListed != 0) write_down(fluid.count);  // nobody
   fluid.near.counts[thread_index()] = in_reach;
   for_listed<Team>(c.grid, fluid, cell, in_reach, [&](std::uint32_t j) {
     const float4 y = __ldg(fluid.state.x + j);
     const float dx = x.x - y.x;
     const float dy = x.y - y.y;
     const float dz = x.z - y.z;
-    if (dx * dx + dy * dy + dz * dz >= h * h) return;
     const float4 v = fluid.state.v[j];
     add_fluid_neighbor<Kernel>(dx, dy, dz, v.x, v.y, v.z, h, 1.0f, sum);
     if constexpr (flows) add_flow<Kernel>({dx, dy, dz}, {v.x, v.y, v.z}, h, flow);

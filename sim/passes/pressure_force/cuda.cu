@@ -20,8 +20,6 @@ __device__ void add_passed_forces(const StepConstants& c, ParticleView<float> p,
   walk([&](std::uint32_t j) {
     const float4 x = __ldg(n.x + j);
     const float dx = p.x - x.x, dy = p.y - x.y, dz = p.z - x.z;
-    const float r_squared = dx * dx + dy * dy + dz * dz;
-    if (r_squared >= h * h) return;
     ParticleView<float> i;
     const Matrix3<float> by = read_passed(n, j, i);
     i.x = x.x;
@@ -39,7 +37,7 @@ __device__ void add_passed_forces(const StepConstants& c, ParticleView<float> p,
       i.uz += left * (v.z - p.vz);
     }
     add_pair_force<Kernel, PairRule::kSolved, Parts::kDrag, false>(p, i, h, c.drag_shape, 1.0f, sum);
-    const float weight = Kernel::pair(r_squared, h, 1.0f).slope_over_r;
+    const float weight = Kernel::pair(dx * dx + dy * dy + dz * dz, h, 1.0f).slope_over_r;
     const float gx = weight * dx, gy = weight * dy, gz = weight * dz;
     const Vector3<float> pushed = times(by, gx, gy, gz);
     sum.x += pushed.x;
@@ -56,7 +54,7 @@ __device__ void add_passed_forces(const StepConstants& c, ParticleView<float> p,
 }
 
 template <class Team, class Parts, Viscosity viscosity, bool stresses>
-__global__ __launch_bounds__(kThreads, stresses ? kBlocksWithStress
+__global__ __launch_bounds__(kThreads, stresses ? kBlocksOfTensors
                                                 : 0) void force_kernel(StepConstants c,
                                                                        const ParticleKind* kinds,
                                                                        SortedFluid fluid, SortedSurface fixed,

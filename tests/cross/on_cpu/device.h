@@ -106,6 +106,12 @@ inline unsigned __float_as_uint(float value) {
   std::memcpy(&bits, &value, sizeof bits);
   return bits;
 }
+inline int __clz(int bits) {
+  return bits == 0 ? 32 : __builtin_clz(static_cast<unsigned>(bits));
+}
+inline unsigned __funnelshift_l(unsigned low, unsigned high, unsigned by) {
+  return by % 32 == 0 ? high : high << by % 32 | low >> (32 - by % 32);
+}
 template <class T, class U>
 T atomicAdd(T* at, U more) {
   const T before = *at;
