@@ -31,10 +31,14 @@ void SortSpace::allocate(std::uint32_t largest_count, std::uint32_t retired, Cal
   temp_.allocate(bytes, check);
 }
 
-void SortSpace::find_cells(const std::uint32_t* keys, std::uint32_t count, bool some_out, CellTable cells,
-                           CallCheck& check, cudaStream_t stream) {
-  if (check.failed()) return;
+void SortSpace::count_keys(const std::uint32_t* keys, std::uint32_t count, bool some_out, CellTable cells,
+                           cudaStream_t stream) const {
   launch_count_keys(keys, count, retired_, some_out ? cells.start + retired_ : nullptr, view(), stream);
+}
+
+void SortSpace::find_cells(const std::uint32_t* keys, std::uint32_t count, CellTable cells, CallCheck& check,
+                           cudaStream_t stream) {
+  if (check.failed()) return;
   std::size_t bytes = temp_.bytes();
   check.ok(exclusive_sum(temp_.data(), bytes, counts_.data(), cells.start, retired_ + 1, stream), "sort");
   launch_note_sources(keys, count, cells.start, view(), stream);
@@ -123,12 +127,14 @@ void FluidBuffers::write(const MovingPacks<PlainColumn>& packs, CallCheck& check
   some_out_ = false;
 }
 
-void FluidBuffers::sort(const StepConstants& constants, SortSpace& space, CallCheck& check,
+void FluidBuffers::sort(const StepConstants& constants, SortSpace& space, Keys keys, CallCheck& check,
                         cudaStream_t stream) {
+  if (check.failed()) return;
   const FluidView from = view_.state;
   current_ = 1 - current_;
   view_.state = view_of(packs_[current_]);
-  space.find_cells(from.key, count(), some_out_, view_.cells, check, stream);
+  if (keys == Keys::kNotCounted) space.count_keys(from.key, count(), some_out_, view_.cells, stream);
+  space.find_cells(from.key, count(), view_.cells, check, stream);
   if (check.failed()) return;
   some_out_ = true;
   launch_gather_fluid(constants, from, space.view(), view_, stream);
@@ -201,7 +207,8 @@ void SurfaceBuffers::place(const StepConstants& constants, const DeviceBody* bod
   if (count() == 0 || check.failed()) return;
   launch_place_surface(constants, local_view_, bodies, stream);
   check.launched("placing body particles");
-  space.find_cells(key_.data(), count(), false, sorted_view_.cells, check, stream);
+  space.count_keys(key_.data(), count(), false, sorted_view_.cells, stream);
+  space.find_cells(key_.data(), count(), sorted_view_.cells, check, stream);
   if (check.failed()) return;
   launch_gather_surface(constants, local_view_, space.view(), sorted_view_, stream);
   check.launched("gathering body particles");

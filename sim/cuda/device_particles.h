@@ -16,10 +16,12 @@ StepConstants step_constants(const RunConstants& constants);
 class SortSpace {
  public:
   void allocate(std::uint32_t largest_count, std::uint32_t retired, CallCheck& check);
-  /// Where each cell will begin, to `cells`; what is left is to bring each to its place. `some_out`: `cells`
-  /// is of the sort before, whose last particles are out.
-  void find_cells(const std::uint32_t* keys, std::uint32_t count, bool some_out, CellTable cells,
-                  CallCheck& check, cudaStream_t stream);
+  /// Counts the keys. `some_out`: `cells` is of the sort before, whose last particles are out.
+  void count_keys(const std::uint32_t* keys, std::uint32_t count, bool some_out, CellTable cells,
+                  cudaStream_t stream) const;
+  /// Where each cell will begin, by the counts to `cells`; what is left is to bring each to its place.
+  void find_cells(const std::uint32_t* keys, std::uint32_t count, CellTable cells, CallCheck& check,
+                  cudaStream_t stream);
   SortView view() const { return {counts_.data(), tickets_.data(), came_.data()}; }
 
  private:
@@ -28,13 +30,17 @@ class SortSpace {
   std::uint32_t retired_ = 0;
 };
 
+/// Whether SortSpace has the keys' counts already.
+enum class Keys { kCounted, kNotCounted };
+
 /// Fluid particles, and a second set of packs that a sort gathers to.
 class FluidBuffers {
  public:
   /// `retired`: the key of who is out, in StepConstants::grid.
   void allocate(std::size_t count, const RunConstants& constants, std::uint32_t retired, CallCheck& check);
   /// Brings the particles into the order of their cells.
-  void sort(const StepConstants& constants, SortSpace& space, CallCheck& check, cudaStream_t stream);
+  void sort(const StepConstants& constants, SortSpace& space, Keys keys, CallCheck& check,
+            cudaStream_t stream);
 
   /// Replaces the particles; all packs have count() entries.
   void write(const MovingPacks<PlainColumn>& packs, CallCheck& check, cudaStream_t stream);

@@ -41,6 +41,8 @@ struct CellTable {
 /// A counting sort under way. Its order is that of cells and, within a cell, of before: tickets are given to
 /// whoever comes first, so a particle's place in its cell is how many of its cell's came from before it.
 struct SortView {
+  static constexpr std::uint32_t kStays = 0xffffffffu;  ///< the ticket of who was out already
+
   std::uint32_t* counts = nullptr;   ///< of each key; 0 before and after a sort
   std::uint32_t* tickets = nullptr;  ///< of each particle, within its key
   std::uint32_t* came = nullptr;     ///< where from, in the order of keys and tickets
@@ -208,8 +210,8 @@ struct DeviceWrench {
 cudaError_t exclusive_sum(void* temp, std::size_t& temp_bytes, const std::uint32_t* counts,
                           std::uint32_t* starts, std::uint32_t count, cudaStream_t stream);
 
-/// order.cu. Counts keys and gives tickets; who was out already, at `*out_before` and behind, keeps its
-/// place. `out_before`: null where nobody was.
+/// order.cu. Counts keys and gives tickets; who was out already, at `*out_before` and behind, stays.
+/// `out_before`: null where nobody was.
 void launch_count_keys(const std::uint32_t* keys, std::uint32_t count, std::uint32_t retired,
                        const std::uint32_t* out_before, const SortView& sort, cudaStream_t stream);
 /// Notes who came from where. `start`: of the counts.
@@ -258,11 +260,11 @@ struct ClampView {
 };
 /// integrate.cu: out[i] = impulses[i], impulses[i] = 0.
 void launch_hand_over(std::int64_t* impulses, std::int64_t* out, std::size_t words, cudaStream_t stream);
-/// integrate.cu: the leap-frog over `dt` s, in place, no further than to the walls, with the new keys. Probes
-/// stay where they are.
+/// integrate.cu: the leap-frog over `dt` s, in place, no further than to the walls, with the new keys,
+/// counted for `sort` unless that is empty. Probes stay where they are.
 void launch_integrate(const StepConstants& constants, const ParticleKind* kinds, const SortedFluid& fluid,
                       float dt, float max_speed, const ClampView& clamps, const ProbeOutput& probes,
-                      std::uint32_t* status, cudaStream_t stream);
+                      const SortView& sort, std::uint32_t* status, cudaStream_t stream);
 
 /// wrench.cu: Eq 5, 6 and 9 on the particles of `surface` whose body is wanted, to `local`'s force and,
 /// `with_drag`, to its drag.

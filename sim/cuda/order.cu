@@ -5,28 +5,26 @@ namespace slosh::cuda {
 
 namespace {
 
-constexpr std::uint32_t kStays = 0xffffffffu;  // the ticket of who was out already
-
 __global__ void count_keys_kernel(const std::uint32_t* keys, std::uint32_t count, std::uint32_t retired,
                                   const std::uint32_t* out_before, SortView sort) {
   const std::uint32_t p = thread_index();
   if (p >= count) return;
   const std::uint32_t key = keys[p];
   const bool stays = key >= retired && out_before && p >= *out_before;
-  sort.tickets[p] = stays ? kStays : atomicAdd(sort.counts + key, 1u);
+  sort.tickets[p] = stays ? SortView::kStays : atomicAdd(sort.counts + key, 1u);
 }
 
 __global__ void note_sources_kernel(const std::uint32_t* keys, std::uint32_t count,
                                     const std::uint32_t* start, SortView sort) {
   const std::uint32_t p = thread_index();
-  if (p < count && sort.tickets[p] != kStays) sort.came[start[keys[p]] + sort.tickets[p]] = p;
+  if (p < count && sort.tickets[p] != SortView::kStays) sort.came[start[keys[p]] + sort.tickets[p]] = p;
 }
 
 // Where `p`, whose key is `key`, goes to. The order of those that are out is nobody's concern.
 __device__ std::uint32_t place_of(std::uint32_t p, std::uint32_t key, std::uint32_t retired,
                                   const std::uint32_t* start, const SortView& sort) {
   const std::uint32_t ticket = sort.tickets[p];
-  if (ticket == kStays) return p;
+  if (ticket == SortView::kStays) return p;
   sort.counts[key] = 0;
   const std::uint32_t begin = start[key];
   if (key >= retired) return begin + ticket;

@@ -92,7 +92,7 @@ __device__ inline void add_forces(const StepConstants& c, const ParticleView<flo
     i.x = x.x;
     i.y = x.y;
     i.z = x.z;
-    // Of 216 candidates 34 are in reach: of the others nothing more is fetched. Where four threads share a
+    // Of 162 candidates 34 are in reach: of the others nothing more is fetched. Where four threads share a
     // particle, waiting for its place first costs more than a velocity that nobody needs.
     if constexpr (!Walk::kListed && (kOfFluid || Team::kLanes < 4)) {
       const float dx = p.x - x.x;

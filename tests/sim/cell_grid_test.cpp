@@ -86,6 +86,37 @@ TEST(CellGrid, GrowsItsCellsRatherThanTheirNumber) {
   EXPECT_LT(grid.cell_of(1e30f, -1e30f, 0.0f), grid.cell_count());
 }
 
+TEST(CellGrid, SlicesHideNobodyInReach) {
+  constexpr float kReach = 0.1f;
+  const CellGrid grid = CellGrid(glm::dvec3(-0.3), glm::dvec3(1.0), kReach).sliced(4);
+  EXPECT_EQ(grid.row_cells(), 9u);
+  std::mt19937 random(7);
+  std::uniform_real_distribution<float> place(-0.3f, 1.0f), step(-kReach, kReach);
+  int in_reach = 0, seen = 0;
+  for (int i = 0; i < 100000; ++i) {
+    const glm::vec3 p(place(random), place(random), place(random));
+    const glm::vec3 q = p + glm::vec3(step(random), step(random), step(random));
+    if (!grid.contains(q.x, q.y, q.z)) continue;
+    const std::uint32_t around = grid.cell_of(p.x, p.y, p.z), cell = grid.cell_of(q.x, q.y, q.z);
+    bool found = false;
+    for (std::uint32_t n = 0; n < 9; ++n)
+      found |= cell - grid.row_around(around, n) < grid.row_cells();  // wraps where it lies before
+    if (glm::distance(p, q) < kReach) {
+      in_reach += 1;
+      EXPECT_TRUE(found);
+    }
+    seen += found;
+  }
+  EXPECT_GT(in_reach, 40000);
+  EXPECT_GE(seen, in_reach);
+}
+
+TEST(CellGrid, SlicesAreFewerWhereCellsAreMany) {
+  const CellGrid grid = CellGrid(glm::dvec3(-1000.0), glm::dvec3(1000.0), 0.001);
+  EXPECT_LE(grid.sliced(64).cell_count(), CellGrid::kMaxSlices);
+  EXPECT_EQ(grid.sliced(4).row_cells(), 9u);
+}
+
 TEST(CellGrid, KnowsWhatIsOutside) {
   const CellGrid grid(glm::dvec3(0.0), glm::dvec3(1.0), 0.1);
   EXPECT_TRUE(grid.contains(0.5f, 0.5f, 0.5f));

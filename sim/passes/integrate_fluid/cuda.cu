@@ -30,11 +30,14 @@ __device__ bool keep_from_walls(const ClampView& clamps, float mass, bool near, 
 __global__ __launch_bounds__(kThreads) void integrate_kernel(StepConstants c, const ParticleKind* kinds,
                                                              SortedFluid fluid, float dt, float max_speed,
                                                              ClampView clamps, ProbeOutput probes,
-                                                             std::uint32_t* out_status) {
+                                                             SortView sort, std::uint32_t* out_status) {
   const std::uint32_t p = thread_index();
   if (p >= fluid.count) return;
   const std::uint32_t retired = c.grid.retired_key();
-  if (fluid.state.key[p] >= retired) return;
+  if (fluid.state.key[p] >= retired) {
+    if (sort.tickets) sort.tickets[p] = SortView::kStays;
+    return;
+  }
   const ParticleKind kind = kinds[fluid.state.kind[p]];
   const float4 force = fluid.force[p];
   if (kind.probe) {  // its body moves it
@@ -63,6 +66,7 @@ __global__ __launch_bounds__(kThreads) void integrate_kernel(StepConstants c, co
     status |= isfinite(x.x) && isfinite(x.y) && isfinite(x.z) ? kStatusEscaped : kStatusNonFinite;
   }
   fluid.state.key[p] = key;
+  if (sort.tickets) sort.tickets[p] = atomicAdd(sort.counts + key, 1u);
   fluid.state.x[p] = make_float4(x.x, x.y, x.z, 0.0f);
   fluid.state.v[p] = make_float4(v.x, v.y, v.z, v4.w);
   if (status) atomicOr(out_status, status);
@@ -84,9 +88,9 @@ void launch_hand_over(std::int64_t* impulses, std::int64_t* out, std::size_t wor
 
 void launch_integrate(const StepConstants& constants, const ParticleKind* kinds, const SortedFluid& fluid,
                       float dt, float max_speed, const ClampView& clamps, const ProbeOutput& probes,
-                      std::uint32_t* status, cudaStream_t stream) {
+                      const SortView& sort, std::uint32_t* status, cudaStream_t stream) {
   integrate_kernel<<<blocks_for(fluid.count), kThreads, 0, stream>>>(constants, kinds, fluid, dt, max_speed,
-                                                                     clamps, probes, status);
+                                                                     clamps, probes, sort, status);
 }
 
 }  // namespace slosh::cuda
