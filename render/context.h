@@ -7,6 +7,7 @@
 
 #include <glm/glm.hpp>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "render/input.h"
@@ -68,8 +69,13 @@ struct HeadlessOptions {
 /// there are threads that read it. A context that wishes the same then writes nothing.
 void set_software_threads(int threads);
 
+/// Why no headless context can be made: a library that OpenGL is loaded from is missing, which libepoxy would
+/// end the program over. Nothing where they are there; a driver may still be missing.
+std::optional<Error> no_headless_gl();
+
 /// A context without display or window, through EGL: surfaceless, else the first EGL device that gives
-/// OpenGL 4.5, else the default display. Errors: no EGL driver, or none with 4.5 core.
+/// OpenGL 4.5, else the default display. Errors: no_headless_gl(), no EGL driver, or none
+/// with 4.5 core.
 Result<std::unique_ptr<Context>> make_headless_context(const HeadlessOptions& options = {});
 
 /// A window and its context. Width and height in screen coordinates, 1–16384. Errors: no display, no

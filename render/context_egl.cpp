@@ -1,4 +1,5 @@
 // Headless contexts through EGL.
+#include <dlfcn.h>
 #include <epoxy/egl.h>
 
 #include <algorithm>
@@ -82,6 +83,15 @@ EGLContext try_display(EGLDisplay display, const char* name, bool debug, std::st
   return context;
 }
 
+bool can_be_loaded(const char* library) {
+  void* const handle = dlopen(library, RTLD_LAZY | RTLD_LOCAL);
+  if (handle) dlclose(handle);
+  return handle;
+}
+
+constexpr const char* kPackages =
+    "Install libegl1, libegl-mesa0 and libgl1-mesa-dri, or the driver of your GPU";
+
 struct Candidate {
   EGLDisplay display;
   const char* name;
@@ -137,11 +147,22 @@ void set_software_threads(int threads) {
   // NOLINTEND(concurrency-mt-unsafe)
 }
 
+std::optional<Error> no_headless_gl() {
+  // As libepoxy looks for them.
+  if (!can_be_loaded("libEGL.so.1"))
+    return Error{"headless OpenGL", "there is no libEGL.so.1 that can be loaded", kPackages};
+  if (!can_be_loaded("libOpenGL.so.0") && !can_be_loaded("libGL.so.1"))
+    return Error{"headless OpenGL", "there is no libOpenGL.so.0 and no libGL.so.1 that can be loaded",
+                 "Install libopengl0"};
+  return std::nullopt;
+}
+
 Result<std::unique_ptr<Context>> make_headless_context(const HeadlessOptions& options) {
   if (options.software_threads < 0 || options.software_threads > 64) {
     return Error{"software_threads", std::to_string(options.software_threads) + " is not within 0–64",
                  "Use 0"};
   }
+  if (std::optional<Error> missing = no_headless_gl()) return std::move(*missing);
   // llvmpipe reads it when its first screen is made, which the first eglInitialize does.
   if (options.software_threads > 0) set_software_threads(options.software_threads);
   std::string reasons;
@@ -150,8 +171,7 @@ Result<std::unique_ptr<Context>> make_headless_context(const HeadlessOptions& op
     if (context != EGL_NO_CONTEXT)
       return std::unique_ptr<Context>(new EglContext(candidate.display, context));
   }
-  return Error{"headless OpenGL", reasons.empty() ? "no EGL display" : reasons,
-               "Install libegl1, libegl-mesa0 and libgl1-mesa-dri, or the driver of your GPU"};
+  return Error{"headless OpenGL", reasons.empty() ? "no EGL display" : reasons, kPackages};
 }
 
 }  // namespace slosh

@@ -41,6 +41,13 @@ bool is_film(const ShowOptions& options, bool headset, Progress& progress) {
   return true;
 }
 
+std::optional<Error> no_film(const ShowOptions& options, bool film) {
+  if (!film || !options.render) return std::nullopt;
+  std::optional<Error> missing = no_headless_gl();
+  if (missing) missing->mend += "; or run with --no-render";
+  return missing;
+}
+
 Result<std::unique_ptr<Context>> make_view_context(const std::string& title, int width, int height,
                                                    const ShowOptions& options, const HeadsetView* headset) {
   if (!headset || wants_mirror(options, headset->headset())) return make_window_context(title, width, height);

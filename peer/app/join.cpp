@@ -125,6 +125,7 @@ int join(JoinOptions options) {
   const std::unique_ptr<HeadsetView> headset = find_headset(options, progress);
   if (headset) options.controllers = headset->link();
   const bool headless = is_film(options, headset != nullptr, progress);
+  if (const std::optional<Error> missing = no_film(options, headless)) return fail(*missing, progress);
   if (headless && options.render) set_software_threads(kViewSoftwareThreads);
 
   RemoteOptions remote;

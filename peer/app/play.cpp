@@ -51,6 +51,7 @@ int play(PlayOptions options) {
   const std::unique_ptr<HeadsetView> headset = find_headset(options, progress);
   if (headset) options.controllers = headset->link();
   const bool headless = is_film(options, headset != nullptr, progress);
+  if (const std::optional<Error> missing = no_film(options, headless)) return fail(*missing, progress);
   Result<Prepared> prepared = prepare(options, headless, progress);
   if (!prepared) return fail(prepared.error(), progress);
   const Prepared& p = prepared.value();

@@ -53,6 +53,19 @@ TEST_F(Refusals, AReportWhoseRunsWereAllRefusedHasFailed) {
   EXPECT_TRUE(contains(outcome.err, "every run was refused")) << outcome.err;
 }
 
+/// A library that cannot be loaded stands before the system's.
+TEST_F(Refusals, WithoutOpenGLAFilmIsRefusedBeforeAnythingIsPrepared) {
+  write("broken/libEGL.so.1", "");
+  const std::vector<std::string> play{
+      "env", "LD_LIBRARY_PATH=broken", test::program(), "play", "probe", "--headless", "--out", "out"};
+  const Outcome outcome = test::Process(play, test::test_folder()).wait();
+  EXPECT_EQ(outcome.code, 1) << outcome.err;
+  EXPECT_TRUE(contains(outcome.err, "there is no libEGL.so.1")) << outcome.err;
+  EXPECT_TRUE(contains(outcome.err, "--no-render")) << outcome.err;
+  EXPECT_FALSE(contains(outcome.err, "settling")) << outcome.err;
+  EXPECT_FALSE(there("out"));
+}
+
 TEST_F(Refusals, AHeadsetWithoutAPictureIsNotPassedOver) {
   const Outcome outcome = test::slosh({"play", "probe", "--headless", "--vr", "--no-render", "--out", "out"});
   EXPECT_EQ(outcome.code, 2);
