@@ -25,20 +25,37 @@ bool shown(const ChartPanel& panel, const glm::dvec2& p) {
          (!panel.log_y || p.y > 0.0);
 }
 
-/// The horizontal axis of curves begins and ends where they do; marks at its ends need room around them.
-std::string range_script(const ChartPanel& panel) {
-  double least = INFINITY, most = -INFINITY;
-  bool marks = false;
+/// The least and the largest value of an axis (0: x, 1: y) that is drawn; the least is above where there is
+/// none.
+glm::dvec2 extent(const ChartPanel& panel, int axis) {
+  glm::dvec2 found(INFINITY, -INFINITY);
   for (const ChartSeries& series : panel.series) {
-    marks = marks || series.mark > 0;
     for (const glm::dvec2& p : series.points) {
       if (!shown(panel, p)) continue;
-      least = std::min(least, p.x);
-      most = std::max(most, p.x);
+      found = {std::min(found.x, p[axis]), std::max(found.y, p[axis])};
     }
   }
-  if (marks || !(least < most)) return "set xrange [*:*]\n";
-  return format("set xrange [%.8g:%.8g]\n", least, most);
+  return found;
+}
+
+/// A logarithmic axis ends a little beyond what it shows, not at the next power of ten, where two of these
+/// are left to be written at it. Empty: gnuplot may choose.
+std::string log_range(const char* axis, const glm::dvec2& extent) {
+  constexpr double kBeyond = 1.5;
+  const double low = extent.x / kBeyond, high = extent.y * kBeyond;
+  if (!(low < high) || std::floor(std::log10(high)) - std::ceil(std::log10(low)) < 1.0) return {};
+  return format("set %srange [%.8g:%.8g]\n", axis, low, high);
+}
+
+/// The horizontal axis of curves begins and ends where they do; marks at its ends need room around them.
+std::string range_script(const ChartPanel& panel) {
+  const glm::dvec2 x = extent(panel, 0);
+  const bool marks =
+      std::any_of(panel.series.begin(), panel.series.end(), [](const ChartSeries& s) { return s.mark > 0; });
+  if (!marks && x.x < x.y) return format("set xrange [%.8g:%.8g]\n", x.x, x.y);
+  const std::string by_tens = panel.log_x ? log_range("x", x) : "";
+  if (!by_tens.empty()) return by_tens;
+  return !panel.log_x && x.x == 0.0 && x.x < x.y ? "set xrange [0:*]\n" : "set xrange [*:*]\n";
 }
 
 /// Stretches of the axis, every second one shaded, their names above the curves.
@@ -64,17 +81,20 @@ std::string spans_script(const ChartPanel& panel) {
   return script;
 }
 
-/// Whether the values are all at or above nothing and begin there: then the axis does too.
+/// Whether the vertical axis begins at nothing: where the values are all at or above it and begin there.
 bool begins_at_zero(const ChartPanel& panel) {
-  double least = INFINITY, most = -INFINITY;
-  for (const ChartSeries& series : panel.series) {
-    for (const glm::dvec2& p : series.points) {
-      if (!shown(panel, p)) continue;
-      least = std::min(least, p.y);
-      most = std::max(most, p.y);
-    }
-  }
-  return !panel.log_y && least >= 0.0 && least < 0.1 * most;
+  const glm::dvec2 y = extent(panel, 1);
+  return !panel.log_y && y.x >= 0.0 && (panel.y_from_zero || y.x < 0.1 * y.y);
+}
+
+std::string height_script(const ChartPanel& panel) {
+  const bool zero = begins_at_zero(panel);
+  const std::string range = panel.log_y ? log_range("y", extent(panel, 1)) : "";
+  // Room around what is drawn, but none below nothing.
+  return format("set offsets graph 0.05, graph 0.05, graph 0.08, %s\n", zero ? "0" : "graph 0.08") +
+         (!range.empty() ? range
+          : zero         ? "set yrange [0:*]\n"
+                         : "set yrange [*:*]\n");
 }
 
 std::size_t longest_name(const ChartPanel& panel) {
@@ -134,9 +154,11 @@ std::string panel_script(const ChartPanel& panel, std::size_t number) {
                           : std::string("set key outside ") +
                                 (has_legend_below(panel) ? "below center" : "right top vertical") +
                                 " reverse Left samplen 2 font \"DejaVu Sans,9\"\n";
+  // A title of nothing keeps a legend below off the axis' label.
+  script += has_legend_below(panel) ? "set key title \" \" font \"DejaVu Sans,5\"\n" : "set key notitle\n";
   if (panel.log_x) script += "set logscale x\n";
   if (panel.log_y) script += "set logscale y\n";
-  script += begins_at_zero(panel) ? "set yrange [0:*]\n" : "set yrange [*:*]\n";
+  script += height_script(panel);
   script += "set title " + gnuplot_text(panel.title) + (panel.spans.empty() ? "" : " offset 0,0.7") +
             " font \"DejaVu Sans,12\"\n";
   script +=
@@ -157,9 +179,7 @@ std::string chart_script(const std::vector<ChartPanel>& panels, int columns, con
   for (const ChartPanel& panel : panels) height = std::max(height, kPanelHeight + height_below(panel));
   std::string script =
       kStyle + gnuplot_terminal(picture, columns * kPanelWidth, rows * height + kTitleHeight, 11);
-  script +=
-      "set format x \"%g\"\nset format y \"%g\"\nset offsets graph 0.05, graph 0.05, graph 0.08, graph "
-      "0.08\n";
+  script += "set format x \"%g\"\nset format y \"%g\"\n";
   script += format("set multiplot layout %d,%d title ", rows, columns) + gnuplot_text(title) +
             " font \"DejaVu Sans,14\"\n";
   for (std::size_t i = 0; i < panels.size(); ++i) {

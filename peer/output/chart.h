@@ -32,7 +32,8 @@ struct ChartPanel {
   std::vector<ChartSeries> series;
   bool legend = true;
   std::vector<ChartSpan> spans = {};  ///< in order; every second one is shaded
-  bool key_alone = false;  ///< no axes: the series' names and looks alone, their points do not matter
+  bool key_alone = false;    ///< no axes: the series' names and looks alone, their points do not matter
+  bool y_from_zero = false;  ///< of an axis that is not logarithmic, however far above it all values are
 };
 
 /// A complete gnuplot script, data included, that writes a picture ("png", "svg" or "pdf"): panels in rows of

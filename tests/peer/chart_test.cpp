@@ -97,6 +97,21 @@ TEST(Chart, AnAxisOfWhatBeginsAtNothingBeginsThere) {
   EXPECT_EQ(chart_script({panel}, 1, "t").find("set yrange [0:*]"), std::string::npos);
   panel.series[0].points = {{0.0, 5.0}, {1.0, 6.0}};
   EXPECT_EQ(chart_script({panel}, 1, "t").find("set yrange [0:*]"), std::string::npos) << "far from it";
+  panel.y_from_zero = true;
+  std::string script = chart_script({panel}, 1, "t");
+  script.insert(script.rfind("unset multiplot"), "if (GPVAL_Y_MIN != 0) exit status 1\n");
+  expect_picture(script, "zero_test.png");
+}
+
+/// Of a logarithmic axis no power of ten is empty, where two are left.
+TEST(Chart, ALogarithmicAxisEndsWhereItsValuesDo) {
+  ChartPanel panel{"t", "x", "y", true, true, {}};
+  panel.series.push_back({"s", "#000000", {{2.0, 0.5}, {300.0, 0.7}}, 7, 1.0, 1.0, false});
+  std::string script = chart_script({panel}, 1, "t");
+  script.insert(script.rfind("unset multiplot"),
+                "if (GPVAL_X_MIN < 1 || GPVAL_X_MAX > 500) exit status 1\n"
+                "if (GPVAL_Y_MAX < 1) exit status 1\n");
+  expect_picture(script, "logarithmic_test.png");
 }
 
 TEST(TileMap, DrawsWhateverItIsGiven) {
