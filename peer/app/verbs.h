@@ -34,7 +34,7 @@ void add_sweep(CLI::App& app, VerbRun& chosen);
 void add_report(CLI::App& app, VerbRun& chosen);
 inline constexpr const char* kSweepAbout = "Run a scene with other values of its fields: one table, one plot";
 inline constexpr const char* kReportAbout =
-    "Measure: error against run time, stability, delays, passes, pictures, figures";
+    "Measure: error against run time, stability, delays, passes, speed, pictures, figures";
 /// `file` must outlive `chosen`.
 void add_settings(CLI::App& app, const SettingsFile& file, VerbRun& chosen);
 /// Gives the options of every verb of `app` their values from `file`, and says at each which key it has. What

@@ -117,6 +117,52 @@ TEST(Report, OfPassesNamesWhatWasLeftOut) {
             std::string::npos);
 }
 
+/// Small pools, but all that it promises: a row a pool, shares, a roofline, the paper's table, pictures.
+TEST(Report, OfSpeedWritesFigureSixAndTableOne) {
+  test::empty_folder();
+  const Outcome ran = test::slosh({"report", "speed", "--quick", "--particles", "800", "--particles", "1600",
+                                   "--total", "1000", "--out", "s"});
+  ASSERT_EQ(ran.code, 0) << ran.err;
+  const std::filesystem::path folder = test::test_folder() / "s";
+  std::istringstream lines(test::read_text(folder / "speed.csv"));
+  std::string line;
+  std::getline(lines, line);
+  EXPECT_EQ(line,
+            "figure,backend,device,fluid_particles,body_particles,wall_particles,bodies,spacing_m,step_ms,"
+            "step_p10_ms,step_p90_ms,picture_ms,particle_steps_per_s,simulated_ms_a_step,sub_steps,"
+            "real_time_factor");
+  std::multiset<std::string> figures;
+  while (std::getline(lines, line)) {
+    figures.insert(line.substr(0, 2));
+    std::vector<std::string> fields;
+    std::istringstream cells(line);
+    for (std::string cell; std::getline(cells, cell, ',');) fields.push_back(cell);
+    ASSERT_EQ(fields.size(), 16u) << line;
+    if (fields[0] != "6a") EXPECT_EQ(std::stoi(fields[3]) + std::stoi(fields[4]), 1000) << line;
+    EXPECT_EQ(std::stoi(fields[4]) > 0, std::stoi(fields[6]) > 0) << line;
+    EXPECT_GT(std::stod(fields[8]), 0.0) << line;
+    EXPECT_GT(std::stod(fields[11]), 0.0) << "a picture was drawn: " << line;
+  }
+  EXPECT_EQ(figures.count("6a"), 2u);
+  EXPECT_EQ(figures.count("6b"), 4u);
+  EXPECT_EQ(figures.count("6c"), 2u) << "16 spheres of 200 particles would be smaller than these";
+  EXPECT_NE(test::read_text(folder / "shares.csv").find(",1600,0,density,"), std::string::npos);
+  const std::string roofs = test::read_text(folder / "roofline.csv");
+  for (const char* pass : {",800,sort_fluid,", ",1600,density,", ",1600,pressure_force,"})
+    EXPECT_NE(roofs.find(pass), std::string::npos) << roofs;
+  EXPECT_NE(test::read_text(folder / "table-1.md").find("| slosh | Lagrangian | 6 |"), std::string::npos);
+  for (const char* picture : {"figure-6.png", "passes.png"})
+    EXPECT_GT(test::read_text(folder / picture).size(), 1000u) << picture;
+  // An earlier one is not lost, and its rows are drawn again beside others.
+  EXPECT_EQ(test::slosh({"report", "speed", "--quick", "--out", "s"}).code, 1);
+  const Outcome again =
+      test::slosh({"report", "speed", "--from", (folder / "speed.csv").string(), "--out", "again"});
+  ASSERT_EQ(again.code, 0) << again.err;
+  EXPECT_EQ(again.err.find("measuring"), std::string::npos) << again.err;
+  EXPECT_EQ(test::read_text(test::test_folder() / "again" / "shares.csv"),
+            test::read_text(folder / "shares.csv"));
+}
+
 TEST(Report, OfPicturesComparesSurfaces) {
   test::empty_folder();
   const Outcome ran = test::slosh({"report", "picture", "--quick", "--out", "p"});
@@ -153,6 +199,7 @@ TEST(Report, BadRequestsSayWhatThereIs) {
     EXPECT_NE(outcome.err.find(part), std::string::npos) << outcome.err;
   };
   expect({"report", "picture", "--threads", "0"}, 2, "--threads");
+  expect({"report", "speed", "--particles", "20"}, 2, "--particles");
   expect({"report"}, 2, "slosh report --help");
   expect({"report", "error", "--case", "sloshin"}, 1, "sloshing");
   expect({"report", "stability", "--case", "nothing"}, 1, "jerk");

@@ -26,7 +26,7 @@ tests      | scenes/ sim/ net/ host/ peer/ render/
 '
 # pattern of what is included | folders or files where it may stand | why
 toolkits='
-^<(cuda|cub/|thrust/)         | sim/cuda sim/passes tests/cross | CUDA only in sim/cuda, and where the backends are compared
+^<(cuda|cub/|thrust/)         | sim/cuda sim/passes tests/cross tests/lab/report/ceilings.cu | CUDA only in sim/cuda, and where backends or GPUs are measured
 ^"sim/cuda/                   | sim/cuda sim/passes sim/particle_engine.cpp tests/cross | only the factory in sim/particle_engine.cpp knows the CUDA engine
 ^<(epoxy|GL|EGL|GLFW)/        | render tests/xr | GL only in render and in the runtime that tests show pictures to
 ^<(openxr|X11)/               | render/xr tests/xr | OpenXR only behind render/headset.h

@@ -15,10 +15,8 @@ namespace {
 
 constexpr int kWarmUp = 10;
 
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
+double median(const std::vector<double>& values) {
+  return percentile(values, 0.5);
 }
 
 struct Variant {
@@ -62,9 +60,17 @@ double farthest(const Snapshot& a, const Snapshot& b) {
   return off;
 }
 
-/// Of steps in a row: on a GPU what another world's step left under way would be in the passes' times.
-void measure_shares(World& world, const std::vector<HandleInput>& hands, const PassOptions& options,
-                    PassTable& table) {
+}  // namespace
+
+double percentile(std::vector<double> values, double share) {
+  const double place = share * static_cast<double>(values.size());
+  const auto nth =
+      values.begin() + static_cast<std::ptrdiff_t>(std::min(place, static_cast<double>(values.size() - 1)));
+  std::nth_element(values.begin(), nth, values.end());
+  return *nth;
+}
+
+StepCost measure_steps(World& world, std::span<const HandleInput> hands, const PassOptions& options) {
   std::vector<double> steps;
   std::array<std::vector<double>, kPassCount> parts;
   for (int i = 0; i < kWarmUp + options.steps; ++i) {
@@ -74,14 +80,13 @@ void measure_shares(World& world, const std::vector<HandleInput>& hands, const P
     steps.push_back(1e3 * world.times().total);
     for (std::size_t p = 0; p < kPassCount; ++p) parts[p].push_back(1e3 * world.times().pass[p]);
   }
-  table.alone_ms = median(steps);
+  StepCost cost{median(steps), percentile(steps, 0.1), percentile(steps, 0.9), {}};
   for (std::size_t p = 0; p < kPassCount; ++p) {
     const double ms = median(parts[p]);
-    if (ms > 0.0) table.shares.push_back({static_cast<PassId>(p), ms, ms / table.alone_ms});
+    if (ms > 0.0) cost.shares.push_back({static_cast<PassId>(p), ms, ms / cost.ms});
   }
+  return cost;
 }
-
-}  // namespace
 
 PassTable measure_passes(const Scene& scene, const SampledScene& sampled, const PassOptions& options) {
   const Plan planned = make_plan(scene, sampled.spacing);
@@ -142,7 +147,7 @@ PassTable measure_passes(const Scene& scene, const SampledScene& sampled, const 
     each.row.slower = median(ratios);
     table.rows.push_back(each.row);
   }
-  measure_shares(variants.front().world, hands, options, table);
+  table.alone = measure_steps(variants.front().world, hands, options);
   return table;
 }
 

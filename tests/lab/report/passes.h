@@ -1,6 +1,7 @@
 // What it saves to leave out of a step what a scene does not need, and that nothing changes by it.
 #pragma once
 
+#include <span>
 #include <string>
 #include <vector>
 
@@ -23,13 +24,20 @@ inline constexpr int kComparedSteps = 20;
 struct PassShare {
   PassId pass;
   double ms = 0.0;  ///< median; of an engine's pass on a GPU the GPU's own time, which overlaps with the rest
-  double share = 0.0;  ///< of PassTable::alone_ms
+  double share = 0.0;  ///< of StepCost::ms
+};
+
+/// Of steps in a row.
+struct StepCost {
+  double ms = 0.0;                ///< median
+  double p10_ms = 0.0;            ///< a tenth of the steps took no longer
+  double p90_ms = 0.0;            ///< a tenth of the steps took as long or longer
+  std::vector<PassShare> shares;  ///< of passes that take time, in their order
 };
 
 struct PassTable {
   std::vector<PassRow> rows;
-  std::vector<PassShare> shares;  ///< of those that take time, in their order
-  double alone_ms = 0.0;          ///< the median step as planned, of steps in a row
+  StepCost alone;  ///< as planned
 };
 
 struct PassOptions {
@@ -38,6 +46,13 @@ struct PassOptions {
   int threads = 0;
   bool (*stopped)() = nullptr;
 };
+
+/// The value that a share (0–1) of the values is below; 0.5 is the median. There must be one at least.
+double percentile(std::vector<double> values, double share);
+
+/// Warms up, then times options.steps steps of a world, one after the other: on a GPU what another world's
+/// step left under way would be in the passes' times. Throws Stopped.
+StepCost measure_steps(World& world, std::span<const HandleInput> hands, const PassOptions& options);
 
 /// The scene as planned first, then with each pass forced in that the plan left out and that can run, then
 /// with what only a viewer or a recording needs. Throws Refused, Stopped.

@@ -49,7 +49,7 @@ TEST(Passes, SharesAreOfThoseThatRunAndMakeUpTheStep) {
   const PassTable table = table_of(tank(0.0));
   double sum = 0.0;
   std::vector<PassId> found;
-  for (const PassShare& each : table.shares) {
+  for (const PassShare& each : table.alone.shares) {
     EXPECT_GT(each.ms, 0.0);
     EXPECT_EQ(runs_in(each.pass), each.pass) << name(each.pass);
     sum += each.share;

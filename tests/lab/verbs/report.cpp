@@ -1,5 +1,5 @@
 // The verb `report`: error against run time, stability at the extremes, hands over a delay, what leaving
-// passes out saves, pictures.
+// passes out saves, what a step costs by size, pictures.
 #include "tests/lab/verbs/report.h"
 
 #include <ctime>
@@ -13,6 +13,7 @@
 #include "peer/output/plot.h"
 #include "sim/backend.h"
 #include "sim/math/format.h"
+#include "tests/lab/report/speed_pool.h"
 #include "tests/lab/verbs/report_coupling.h"
 
 namespace slosh {
@@ -189,6 +190,47 @@ void add_report(CLI::App& app, VerbRun& chosen) {
   passes->callback([&chosen, options, scene, spacing] {
     chosen = [options, scene, spacing] { return report_passes(*options, *scene, *spacing); };
   });
+  CLI::App* speed =
+      verb->add_subcommand("speed", "The paper's Figure 6 and Table 1: what a step costs by size");
+  auto sizes = std::make_shared<SpeedOptions>();
+  speed->add_flag("--quick", options->quick,
+                  "Fewer and smaller pools, 20 timed steps instead of 200: a minute at most");
+  speed
+      ->add_option("--particles", sizes->particles,
+                   "Fluid particles of a pool of Figure 6a, in place of its own; may be given more than once")
+      ->check(in_range(report::kMinSpeedParticles, 10'000'000));
+  speed
+      ->add_option("--total", sizes->total,
+                   "Particles of fluid and spheres together in Figures 6b and 6c (25000)")
+      ->check(in_range(report::kMinSpeedParticles, 10'000'000));
+  speed->add_option("--out", options->out, "Folder for the tables and pictures (slosh-report-speed)");
+  speed
+      ->add_option(
+          "--from", options->from,
+          "Draw these speed.csv of earlier reports, of any machine, and run nothing; again for more. "
+          "Reads\nshares.csv and roofline.csv beside each")
+      ->check(CLI::ExistingFile);
+  add_machine_options(*speed, *options);
+  speed->footer(
+      "Times steps of a pool of fluid over its particles, with and without a picture of 1024 x 768; of one "
+      "with a\n"
+      "floating sphere that grows while the total stays; and of one whose body particles are split over "
+      "more\n"
+      "spheres. Body particles lie on surfaces: a sphere of as many is larger than the paper's. Writes "
+      "speed.csv,\n"
+      "a row as soon as it is there; shares.csv, each pass's share of a step; roofline.csv, what the heavy "
+      "passes\n"
+      "reach of the memory's bandwidth and of the arithmetic, which are measured in the same run (their "
+      "bytes and\n"
+      "FLOP are estimates, each column once); figure-6.png, passes.png and table-1.md. Without OpenGL there "
+      "is no\n"
+      "curve with a picture, without gnuplot there are tables alone. Four minutes on two cores. Ctrl-C draws "
+      "what\n"
+      "there is.\n\n"
+      "Examples:\n  slosh report speed --quick\n  slosh report speed --backend both --out here\n"
+      "  slosh report speed --from here/speed.csv --from there/speed.csv --out both");
+  speed->callback(
+      [&chosen, options, sizes] { chosen = [options, sizes] { return report_speed(*options, *sizes); }; });
   CLI::App* figure =
       verb->add_subcommand("figure", "A figure of the paper again, judged against the paper's words");
   auto which = std::make_shared<FigureOptions>();

@@ -1,4 +1,4 @@
-// What the three reports share: where they write, and what they run on.
+// What the reports share: where they write, and what they run on.
 #pragma once
 
 #include <cstdint>
@@ -33,6 +33,12 @@ int report_stability(const ReportOptions& options);
 int report_coupling(const ReportOptions& options);
 /// `spacing` m; 0: the scene's own, else its coarsest.
 int report_passes(const ReportOptions& options, const std::string& scene_name, double spacing);
+
+struct SpeedOptions {
+  std::vector<std::size_t> particles;  ///< of Figure 6a's pools; empty: the report's own
+  std::size_t total = 0;               ///< particles of Figures 6b and 6c; 0: the paper's
+};
+int report_speed(const ReportOptions& options, const SpeedOptions& speed);
 
 /// Threads are the renderer's where a CPU draws.
 int report_picture(const ReportOptions& options);

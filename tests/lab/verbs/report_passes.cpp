@@ -27,13 +27,13 @@ std::string agrees(const report::PassRow& row) {
 void print_shares(const report::PassTable& found, Backend backend) {
   const bool gpu = backend == Backend::kCuda;
   std::printf("\n%-32s %10s %10s   of %.4f ms, steps in a row\n", "within a step as planned", "ms", "share",
-              found.alone_ms);
+              found.alone.ms);
   const auto line = [](const char* what, double ms, double share, const char* note) {
     std::printf("%-32s %10.4f %9.1f%%%s\n", what, ms, 100.0 * share, note);
   };
   const auto list = [&](const char* all, auto&& belongs) {
     double ms = 0.0, share = 0.0;
-    for (const report::PassShare& each : found.shares) {
+    for (const report::PassShare& each : found.alone.shares) {
       if (!belongs(each.pass)) continue;
       line(name(each.pass), each.ms, each.share,
            gpu && each.pass == PassId::kReadWrenches ? "   waits for the GPU" : "");
@@ -100,7 +100,7 @@ int report_passes(const ReportOptions& options, const std::string& scene_name, d
                     row.slower, row.bytes_a_particle, row.same_bits ? 1 : 0, row.off);
     }
     print_shares(found, backend);
-    for (const report::PassShare& each : found.shares)
+    for (const report::PassShare& each : found.alone.shares)
       shares += format("%s,%s,%.5g,%.4f\n", backend_name(backend), name(each.pass), each.ms, each.share);
   }
   if (options.out.empty()) return kExitOk;

@@ -25,21 +25,25 @@ RenderOptions report_options(Surface surface, int width, int height) {
   return options;
 }
 
-Stand::Stand(std::unique_ptr<Renderer> renderer, const Scene& scene, double spacing)
-    : renderer_(std::move(renderer)), builder_(scene, spacing, *renderer_), camera_(scene.camera) {}
+Stand::Stand(std::unique_ptr<Renderer> renderer, const Scene& scene, double spacing, double aspect)
+    : renderer_(std::move(renderer)),
+      builder_(scene, spacing, *renderer_),
+      camera_(scene.camera),
+      aspect_(aspect) {}
 
 Result<std::unique_ptr<Stand>> Stand::create(Context& context, Surface surface, const Scene& scene,
-                                             double spacing, bool keep_still) {
-  RenderOptions options = report_options(surface, kReportWidth, kReportHeight);
+                                             double spacing, bool keep_still, glm::ivec2 size) {
+  RenderOptions options = report_options(surface, size.x, size.y);
   options.keep_still = keep_still;
   auto made = Renderer::create(context, options);
   if (!made) return made.error();
-  return std::unique_ptr<Stand>(new Stand(std::move(made.value()), scene, spacing));
+  return std::unique_ptr<Stand>(
+      new Stand(std::move(made.value()), scene, spacing, static_cast<double>(size.x) / size.y));
 }
 
 const Image& Stand::draw(const Snapshot& snapshot) {
   frame_ = builder_.build(snapshot, camera_.distance());
-  frame_.view = camera_.view(static_cast<double>(kReportWidth) / kReportHeight);
+  frame_.view = camera_.view(aspect_);
   renderer_->draw(frame_);
   return image_ = renderer_->read_back();
 }

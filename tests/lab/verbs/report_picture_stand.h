@@ -26,9 +26,10 @@ RenderOptions report_options(Surface surface, int width, int height);
 /// A scene's snapshots, drawn by one way.
 class Stand {
  public:
-  /// Errors: as Renderer::create().
+  /// `size` in pixels. Errors: as Renderer::create().
   static Result<std::unique_ptr<Stand>> create(Context& context, Surface surface, const Scene& scene,
-                                               double spacing, bool keep_still = false);
+                                               double spacing, bool keep_still = false,
+                                               glm::ivec2 size = {kReportWidth, kReportHeight});
   const Image& draw(const Snapshot& snapshot);
   /// Of the filter, and of the whole frame, ms: medians over `frames` of what was drawn last.
   std::pair<double, double> times(int frames);
@@ -36,10 +37,11 @@ class Stand {
   const View& view() const { return frame_.view; }
 
  private:
-  Stand(std::unique_ptr<Renderer> renderer, const Scene& scene, double spacing);
+  Stand(std::unique_ptr<Renderer> renderer, const Scene& scene, double spacing, double aspect);
   std::unique_ptr<Renderer> renderer_;
   FrameBuilder builder_;
   OrbitCamera camera_;
+  double aspect_;
   Frame frame_;
   Image image_;
 };
