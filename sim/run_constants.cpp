@@ -131,7 +131,11 @@ RunConstants make_run_constants(const Scene& scene, const SampledScene& sampled,
   const double h = c.plan.support_radius;
   const double spacing = c.plan.spacing;
   const Box box = domain_of(scene, sampled, h);
-  c.grid = CellGrid(box.lower, box.upper, h);
+  // Many particles can afford more cells than few: what empty ones cost is shared by them.
+  constexpr double kCellsAParticle = 8.0;
+  c.grid = CellGrid(box.lower, box.upper, h,
+                    std::max(CellGrid::kMaxCells,
+                             kCellsAParticle * static_cast<double>(sampled.fluid_positions.size())));
   c.support_radius = static_cast<float>(h);
   with_model(c.plan.model, [&]<class Parts>() {
     c.force_scale = static_cast<float>(Parts::ForceKernel::scale(h));

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <limits>
 #include <map>
@@ -104,6 +105,9 @@ ContactFinder::ContactFinder(const Scene& scene, const SampledScene& sampled) : 
     }
     shape.flat = flat_points(shape.points, shape.normals, static_cast<float>(1.5 * spacing_));
     if (shape.points.empty()) continue;
+    std::vector<std::uint32_t> all(shape.points.size());
+    std::iota(all.begin(), all.end(), 0u);
+    cluster(shape.points, all, shape.clusters);
     shape.lower = shape.upper = shape.points.front();
     for (const glm::vec3& p : shape.points) {
       shape.lower = glm::min(shape.lower, p);
@@ -111,6 +115,30 @@ ContactFinder::ContactFinder(const Scene& scene, const SampledScene& sampled) : 
       shape.radius = std::max(shape.radius, static_cast<double>(glm::length(p)));
     }
   }
+}
+
+// Halves them across their longest side until few are left.
+void ContactFinder::cluster(const std::vector<glm::vec3>& points, std::span<std::uint32_t> which,
+                            std::vector<Cluster>& out) {
+  constexpr std::size_t kTogether = 32;
+  glm::vec3 lower = points[which.front()], upper = lower;
+  for (const std::uint32_t i : which) {
+    lower = glm::min(lower, points[i]);
+    upper = glm::max(upper, points[i]);
+  }
+  if (which.size() > kTogether) {
+    const glm::vec3 size = upper - lower;
+    const int axis = size.x > size.y && size.x > size.z ? 0 : size.y > size.z ? 1 : 2;
+    const std::size_t half = which.size() / 2;
+    std::nth_element(which.begin(), which.begin() + static_cast<std::ptrdiff_t>(half), which.end(),
+                     [&](std::uint32_t a, std::uint32_t b) { return points[a][axis] < points[b][axis]; });
+    cluster(points, which.first(half), out);
+    cluster(points, which.subspan(half), out);
+    return;
+  }
+  Cluster all{0.5f * (lower + upper), 0.0f, {which.begin(), which.end()}};
+  for (const std::uint32_t i : which) all.radius = std::max(all.radius, glm::distance(all.center, points[i]));
+  out.push_back(std::move(all));
 }
 
 glm::dvec3 ContactFinder::Motion::velocity_at(int body, const glm::dvec3& where) const {
@@ -224,9 +252,20 @@ void ContactFinder::points_against_field(const Motion& motion, int points_of, in
   const float margin = static_cast<float>(motion.margin);
   const bool sweeps = reach > motion.margin;
   const DistanceFieldView field = solid.field.view();
-  for (std::size_t i = 0; i < points.points.size(); ++i) {
+  // By clusters: a tank has thousands of points, and what floats in it comes near few.
+  constexpr float kSteepest = 3.0f;  // of a trilinear distance, beyond its grid too
+  near_.assign(points.points.size() / 64 + 1, 0);
+  for (const Cluster& cluster : points.clusters) {
+    const glm::vec3 c = turn * cluster.center + shift;
+    if (glm::any(glm::lessThan(c, lower - cluster.radius)) ||
+        glm::any(glm::greaterThan(c, upper + cluster.radius)) ||
+        sample_distance(field, c).distance > kSteepest * (cluster.radius + static_cast<float>(reach)))
+      continue;
+    for (const std::uint32_t i : cluster.points) near_[i / 64] |= std::uint64_t{1} << i % 64;
+  }
+  const auto look_at = [&](std::size_t i) {
     const glm::vec3 p = turn * points.points[i] + shift;
-    if (glm::any(glm::lessThan(p, lower)) || glm::any(glm::greaterThan(p, upper))) continue;
+    if (glm::any(glm::lessThan(p, lower)) || glm::any(glm::greaterThan(p, upper))) return;
     const glm::dvec3 where = transform_point(solid_pose, glm::dvec3(p));
     glm::vec3 path(0.0f);
     if (sweeps) {
@@ -234,7 +273,7 @@ void ContactFinder::points_against_field(const Motion& motion, int points_of, in
                                                   motion.velocity_at(field_of, where))));
     }
     const Meeting met = meet(field, p, path, margin);
-    if (!met.found) continue;
+    if (!met.found) return;
     const float length = glm::length(met.sample.gradient);
     glm::vec3 normal = length > 0.0f ? met.sample.gradient / length : glm::vec3(0.0f);
     float distance = met.sample.distance;
@@ -245,13 +284,17 @@ void ContactFinder::points_against_field(const Motion& motion, int points_of, in
       normal = out;
       distance = *faces;
     } else if (!(length > 1e-3f)) {
-      continue;  // the middle of a solid: other points have the direction
+      return;  // the middle of a solid: other points have the direction
     }
     // From where the point is now to the plane that it meets.
     const double gap = distance + glm::dot(p - met.at, normal);
     found_.push_back({points_of, field_of, where, solid_pose.orientation * glm::dvec3(normal),
                       beyond(gap, kTouching * spacing_)});
     facing_.push_back(-glm::dot(turn * points.normals[i], normal));
+  };
+  for (std::size_t word = 0; word < near_.size(); ++word) {  // in the points' order
+    for (std::uint64_t bits = near_[word]; bits; bits &= bits - 1)
+      look_at(64 * word + static_cast<std::size_t>(std::countr_zero(bits)));
   }
 }
 

@@ -2,6 +2,8 @@
 // other's distance field, solved at velocity level by projected Gauss–Seidel.
 #pragma once
 
+#include <cstdint>
+#include <span>
 #include <vector>
 
 #include "scenes/scene.h"
@@ -25,10 +27,17 @@ class ContactFinder {
             double dt, const ContactMemory& memory, std::vector<Contact>& contacts);
 
  private:
+  // Points that lie together.
+  struct Cluster {
+    glm::vec3 center{0.0f};  // mesh frame
+    float radius = 0.0f;     // m
+    std::vector<std::uint32_t> points;
+  };
   struct Shape {
     std::vector<glm::vec3> points;   // surface particles, mesh frame
     std::vector<glm::vec3> normals;  // theirs, outward
     std::vector<char> flat;          // 1: all of its neighbours on the same face have its normal
+    std::vector<Cluster> clusters;   // all points, each in one
     DistanceField field;
     glm::vec3 lower{0.0f}, upper{0.0f};  // bounds of the points, mesh frame
     double radius = 0.0;                 // of the points about the mesh frame's origin, m
@@ -45,9 +54,12 @@ class ContactFinder {
   void keep_spread(const std::vector<RigidBody>& bodies, std::span<const KeptImpulse> known,
                    std::vector<Contact>& contacts);
   void points_against_field(const Motion& motion, int points_of, int field_of, double reach);
+  static void cluster(const std::vector<glm::vec3>& points, std::span<std::uint32_t> which,
+                      std::vector<Cluster>& out);
 
   std::vector<Shape> shapes_;
   double spacing_;
+  std::vector<std::uint64_t> near_;  // a bit for each point that may be near the other body
   std::vector<Contact> found_;
   std::vector<double>
       facing_;  // one for each found: how squarely the two surfaces face each other, 1 = fully

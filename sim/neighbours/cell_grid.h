@@ -17,8 +17,9 @@ class CellGrid {
  public:
   CellGrid() = default;
   /// Covers [lower, upper] (m) with cells of at least `support_radius`. When that would take more than
-  /// kMaxCells cells, the cells grow: slower, not wrong.
-  CellGrid(const glm::dvec3& lower, const glm::dvec3& upper, double support_radius)
+  /// `max_cells`, the cells grow: slower, not wrong.
+  CellGrid(const glm::dvec3& lower, const glm::dvec3& upper, double support_radius,
+           double max_cells = kMaxCells)
       : lower_(lower), upper_(upper) {
     const glm::dvec3 extent = glm::max(upper - lower, glm::dvec3(support_radius));
     // A hair more than the support radius: float rounding of a cell index must not hide a neighbour.
@@ -27,7 +28,7 @@ class CellGrid {
       const glm::dvec3 n = glm::floor(extent / size) + 3.0;
       return n.x * n.y * n.z;
     };
-    while (count_at(cell) > kMaxCells) cell *= 1.1;
+    while (count_at(cell) > max_cells) cell *= 1.1;
     inverse_cell_ = glm::vec3(static_cast<float>(1.0 / cell));
     cells_ = glm::uvec3(glm::floor(extent / cell) + 3.0);
   }

@@ -90,8 +90,8 @@ SpeedPool speed_pool(std::size_t particles, std::size_t on_spheres, int spheres)
     next.pose = pose;
     b.scene.bodies.push_back(next);
   }
-  b.set_domain({-2.0 * at.width, -0.5 * at.width, -2.0 * at.width},
-               {2.0 * at.width, 2.0 * at.width, 2.0 * at.width});
+  b.set_domain({-0.6 * at.width, -0.2 * at.width, -0.6 * at.width},
+               {0.6 * at.width, 0.8 * at.width, 0.6 * at.width});
   b.scene.camera.target = {0.0, 0.5 * at.depth, 0.0};
   b.scene.camera.eye = {0.7 * at.width, 0.9 * at.width, 1.2 * at.width};
   // Without the volume of fluid: it reaches into the spheres, and the lattice is made to the particle.
