@@ -12,24 +12,57 @@ using Four = float __attribute__((vector_size(16)));
 using Eight = float __attribute__((vector_size(32)));
 using EightBits = std::int32_t __attribute__((vector_size(32)));
 
-/// Two eights, as the widest vectors of many machines are: one vector of sixteen GCC takes apart float by
-/// float there.
+#ifdef __AVX512F__
+using Part = float __attribute__((vector_size(64)));
+using PartBits = std::int32_t __attribute__((vector_size(64)));
+#else
+using Part = Eight;
+using PartBits = EightBits;
+#endif
+/// As the widest vectors of the machine this was compiled for: a wider one GCC takes apart float by float.
 struct Sixteen {
-  Eight low, high;
+  static constexpr std::size_t kParts = 64 / sizeof(Part);
+  Part part[kParts];
 
-  Sixteen& operator+=(const Sixteen& o) { return *this = {low + o.low, high + o.high}; }
-  Sixteen& operator-=(const Sixteen& o) { return *this = {low - o.low, high - o.high}; }
-  friend Sixteen operator+(const Sixteen& a, const Sixteen& b) { return {a.low + b.low, a.high + b.high}; }
-  friend Sixteen operator-(const Sixteen& a, const Sixteen& b) { return {a.low - b.low, a.high - b.high}; }
-  friend Sixteen operator*(const Sixteen& a, const Sixteen& b) { return {a.low * b.low, a.high * b.high}; }
-  friend Sixteen operator*(float a, const Sixteen& b) { return {a * b.low, a * b.high}; }
-  friend Sixteen operator+(const Sixteen& a, float b) { return {a.low + b, a.high + b}; }
-  friend Sixteen operator-(float a, const Sixteen& b) { return {a - b.low, a - b.high}; }
+  template <class F>
+  static Sixteen each(F&& f) {
+    Sixteen out;
+    for (std::size_t k = 0; k < kParts; ++k) out.part[k] = f(k);
+    return out;
+  }
+  Sixteen& operator+=(const Sixteen& o) { return *this = *this + o; }
+  Sixteen& operator-=(const Sixteen& o) { return *this = *this - o; }
+  friend Sixteen operator+(const Sixteen& a, const Sixteen& b) {
+    return each([&](std::size_t k) { return a.part[k] + b.part[k]; });
+  }
+  friend Sixteen operator-(const Sixteen& a, const Sixteen& b) {
+    return each([&](std::size_t k) { return a.part[k] - b.part[k]; });
+  }
+  friend Sixteen operator*(const Sixteen& a, const Sixteen& b) {
+    return each([&](std::size_t k) { return a.part[k] * b.part[k]; });
+  }
+  friend Sixteen operator*(float a, const Sixteen& b) {
+    return each([&](std::size_t k) { return a * b.part[k]; });
+  }
+  friend Sixteen operator+(const Sixteen& a, float b) {
+    return each([&](std::size_t k) { return a.part[k] + b; });
+  }
+  friend Sixteen operator-(float a, const Sixteen& b) {
+    return each([&](std::size_t k) { return a - b.part[k]; });
+  }
 };
 
+inline Sixteen of_eights(Eight low, Eight high) {
+#ifdef __AVX512F__
+  return {{__builtin_shufflevector(low, high, 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15)}};
+#else
+  return {{low, high}};
+#endif
+}
+
 inline Sixteen side_by_side(Four a, Four b, Four c, Four d) {
-  return {__builtin_shufflevector(a, b, 0, 1, 2, 3, 4, 5, 6, 7),
-          __builtin_shufflevector(c, d, 0, 1, 2, 3, 4, 5, 6, 7)};
+  return of_eights(__builtin_shufflevector(a, b, 0, 1, 2, 3, 4, 5, 6, 7),
+                   __builtin_shufflevector(c, d, 0, 1, 2, 3, 4, 5, 6, 7));
 }
 
 /// Of four floats that lie one after the other.
@@ -43,37 +76,38 @@ inline Four four_at(const float* v) {
 inline Sixteen each_even_four_times(const float* v) {
   Eight eight;
   std::memcpy(&eight, v, sizeof eight);
-  return {__builtin_shufflevector(eight, eight, 0, 0, 0, 0, 2, 2, 2, 2),
-          __builtin_shufflevector(eight, eight, 4, 4, 4, 4, 6, 6, 6, 6)};
+#ifdef __AVX512F__
+  return {{__builtin_shufflevector(eight, eight, 0, 0, 0, 0, 2, 2, 2, 2, 4, 4, 4, 4, 6, 6, 6, 6)}};
+#else
+  return {{__builtin_shufflevector(eight, eight, 0, 0, 0, 0, 2, 2, 2, 2),
+           __builtin_shufflevector(eight, eight, 4, 4, 4, 4, 6, 6, 6, 6)}};
+#endif
 }
 
 /// 1/√ of each, which must be above 0: an estimate and one Newton step, as RealOps<FloatBatch> has it.
-inline Eight inverse_roots(Eight v) {
-#ifdef __AVX512VL__
-  const Eight guess = reinterpret_cast<Eight>(_mm256_rsqrt14_ps(reinterpret_cast<__m256>(v)));
-#elif defined(__AVX__)
-  const Eight guess = reinterpret_cast<Eight>(_mm256_rsqrt_ps(reinterpret_cast<__m256>(v)));
-#else
-  Eight guess;
-  for (int k = 0; k < 8; ++k) guess[k] = RealOps<float>::inverse_sqrt(v[k]);
-#endif
-  return guess * (1.5f - 0.5f * v * guess * guess);
-}
 inline Sixteen inverse_roots(const Sixteen& v) {
-  return {inverse_roots(v.low), inverse_roots(v.high)};
+  return Sixteen::each([&](std::size_t k) {
+    const Part x = v.part[k];
+#if defined(__AVX512F__)
+    const Part guess = reinterpret_cast<Part>(_mm512_rsqrt14_ps(reinterpret_cast<__m512>(x)));
+#elif defined(__AVX__)
+    const Part guess = reinterpret_cast<Part>(_mm256_rsqrt_ps(reinterpret_cast<__m256>(x)));
+#else
+    Part guess;
+    for (int i = 0; i < 8; ++i) guess[i] = RealOps<float>::inverse_sqrt(x[i]);
+#endif
+    return guess * (1.5f - 0.5f * x * guess * guess);
+  });
 }
 
 /// v, or 0 where that is below.
 inline Sixteen at_least_zero(const Sixteen& v) {
-  return {v.low > 0.0f ? v.low : Eight{}, v.high > 0.0f ? v.high : Eight{}};
+  return Sixteen::each([&](std::size_t k) { return v.part[k] > 0.0f ? v.part[k] : Part{}; });
 }
 
 /// `v` where `test` is above 0, else 0.
 inline Sixteen where_above_zero(const Sixteen& test, const Sixteen& v) {
-  const auto half = [](Eight t, Eight x) {
-    return reinterpret_cast<Eight>(reinterpret_cast<EightBits>(x) & (t > 0.0f));
-  };
-  return {half(test.low, v.low), half(test.high, v.high)};
+  return Sixteen::each([&](std::size_t k) { return test.part[k] > 0.0f ? v.part[k] : Part{}; });
 }
 
 /// Four pairs of 8 bytes: each four's first and the whole number that is beside it in the pair.
@@ -82,15 +116,25 @@ inline void put_pairs(const Sixteen& firsts, const std::int32_t* numbers, void* 
   FourBits four;
   std::memcpy(&four, numbers, sizeof four);
   const Eight beside = reinterpret_cast<Eight>(__builtin_shufflevector(four, four, 0, 0, 1, 1, 2, 2, 3, 3));
-  const Eight even = __builtin_shufflevector(firsts.low, firsts.high, 0, 0, 4, 4, 8, 8, 12, 12);
+#ifdef __AVX512F__
+  const Eight even = __builtin_shufflevector(firsts.part[0], firsts.part[0], 0, 0, 4, 4, 8, 8, 12, 12);
+#else
+  const Eight even = __builtin_shufflevector(firsts.part[0], firsts.part[1], 0, 0, 4, 4, 8, 8, 12, 12);
+#endif
   const Eight pairs = __builtin_shufflevector(even, beside, 0, 9, 2, 11, 4, 13, 6, 15);
   std::memcpy(to, &pairs, sizeof pairs);
 }
 
-/// Each half's floats in the order of the template's arguments.
+/// The floats of each eight in the order of the template's arguments.
 template <int... order>
 Sixteen ordered(const Sixteen& v) {
-  return {__builtin_shufflevector(v.low, v.low, order...), __builtin_shufflevector(v.high, v.high, order...)};
+  return Sixteen::each([&](std::size_t k) {
+#ifdef __AVX512F__
+    return __builtin_shufflevector(v.part[k], v.part[k], order..., (8 + order)...);
+#else
+    return __builtin_shufflevector(v.part[k], v.part[k], order...);
+#endif
+  });
 }
 /// In each four the second, the third, the first; the fourth stays.
 inline Sixteen turned(const Sixteen& v) {
