@@ -72,12 +72,17 @@ FloatBatch reach_of(const NeighborColumns& n, std::uint32_t j, FloatBatch h) {
   return h;
 }
 
-/// `h`: within which p meets fluid, m.
+/// What is done with each batch besides: nothing.
+struct NothingBesides {
+  void operator()(const ParticleView<FloatBatch>&, FloatBatch, FloatBatch) const {}
+};
+
+/// `h`: within which p meets fluid, m. Calls also(i, reach, weight) for each batch besides.
 template <class Parts, PairRule rule, Viscosity viscosity, Neighbours neighbours = Neighbours::kFluid,
-          class Sum = ForceSum<FloatBatch>>
+          class Sum = ForceSum<FloatBatch>, class Also = NothingBesides>
 void add_row_forces(const ParticleView<FloatBatch>& p, const NeighborColumns& n, const RowList& rows,
                     FloatBatch h, const DragShape<FloatBatch>& shape, Sum& sum,
-                    FloatBatch of_fluid = FloatBatch(1.0f)) {
+                    FloatBatch of_fluid = FloatBatch(1.0f), const Also& also = {}) {
   // With one viscosity, viscosity times velocity is in u already.
   constexpr bool kViscous =
       is_corrected_fluid(rule) ? viscosity == Viscosity::kPair : viscosity != Viscosity::kNone;
@@ -106,8 +111,10 @@ void add_row_forces(const ParticleView<FloatBatch>& p, const NeighborColumns& n,
       i.vz = FloatBatch::load_unaligned(n.vz + j);
       i.viscosity = viscosity_of<viscosity, neighbours>(p, n, j, of_fluid);
     }
-    add_pair_force<typename Parts::ForceKernel, rule, Parts::kDrag, kViscous>(
-        p, i, reach_of<neighbours>(n, j, h), shape, weight, sum);
+    const FloatBatch reach = reach_of<neighbours>(n, j, h);
+    add_pair_force<typename Parts::ForceKernel, rule, Parts::kDrag, kViscous>(p, i, reach, shape, weight,
+                                                                              sum);
+    also(i, reach, weight);
   };
   for_each_batch(rows, add);
 }

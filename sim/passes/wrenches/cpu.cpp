@@ -8,21 +8,63 @@ namespace slosh {
 
 namespace {
 
-// Of one body particle, N·s/m.
+// What goes into each body particle's sums, one chunk of runs at a time, and where they go.
+struct SurfaceWalk {
+  const PassContext& context;
+  const FluidParticles& fluid;
+  const BoundaryParticles& boundary;
+  const std::vector<char>& wanted;
+  SurfaceSums& sums;
+  bool drags;
+};
+
+// All of a pair in one loop: left to itself the compiler calls functions and hands batches over in memory.
 template <class Parts, Viscosity viscosity>
-Symmetric<float> drag_rate(const ParticleView<FloatBatch>& self, const NeighborColumns& fluid,
-                           const RowList& rows, FloatBatch h, const DragShape<FloatBatch>& shape, float scale,
-                           float of_fluid) {
-  const FloatBatch none(0.0f);
-  Symmetric<FloatBatch> sum{none, none, none, none, none, none};
-  for_each_dragged<viscosity, Neighbours::kFluid>(
-      self, fluid, rows, h, FloatBatch(of_fluid),
-      [&](const ParticleView<FloatBatch>& i, FloatBatch reach, FloatBatch weight) {
-        add_pair_viscosity_rate<typename Parts::ForceKernel, Parts::kDrag>(self, i, reach, shape, weight,
-                                                                           sum);
-      });
-  return {scale * lane_sum(sum.xx), scale * lane_sum(sum.xy), scale * lane_sum(sum.xz),
-          scale * lane_sum(sum.yy), scale * lane_sum(sum.yz), scale * lane_sum(sum.zz)};
+__attribute__((flatten)) void find_sums(const SurfaceWalk& walk, std::size_t begin, std::size_t end) {
+  const PassContext& context = walk.context;
+  const BoundaryParticles& boundary = walk.boundary;
+  const std::vector<CellRun>& runs = boundary.index.runs();
+  const NeighborColumns fluid_columns = columns(walk.fluid);
+  const NeighborColumns own = columns(boundary);
+  const DragShape<FloatBatch> shape = in_all_lanes(context.drag_shape);
+  const FloatBatch beyond(1.0f - context.correction.wall_layer);
+  const float scale = context.force_scale;
+  for (std::size_t r = begin; r < end; ++r) {
+    const RowList rows = walk.fluid.index.rows(context.grid, runs[r].cell);
+    for (std::uint32_t i = runs[r].particles.begin; i < runs[r].particles.end; ++i) {
+      walk.sums.force[i] = walk.sums.couple[i] = glm::vec3(0.0f);
+      if (walk.drags) walk.sums.drag_rate[i] = {};
+      if (rows.count == 0 || !walk.wanted[boundary.body[i]]) continue;
+      const FloatBatch none(0.0f), h(boundary.reach[i]);
+      SurfaceSum<FloatBatch> sum{{none, none, none}, none, none, none, beyond};
+      Symmetric<FloatBatch> rate{none, none, none, none, none, none};
+      const WallViscosity wall = wall_viscosity(boundary.viscosity[i]);
+      const ParticleView<FloatBatch> self =
+          broadcast(own, i, own_viscosity<viscosity>(wall, context.kinds.front().viscosity));
+      const auto add_forces = [&](const auto& also) {
+        add_row_forces<Parts, Parts::kOnBodies, viscosity>(self, fluid_columns, rows, h, shape, sum,
+                                                           FloatBatch(wall.of_fluid), also);
+      };
+      if (viscosity != Viscosity::kNone && walk.drags) {
+        add_forces([&](const ParticleView<FloatBatch>& p, FloatBatch reach, FloatBatch weight) {
+          add_pair_viscosity_rate<typename Parts::ForceKernel, Parts::kDrag>(self, p, reach, shape, weight,
+                                                                             rate);
+        });
+        walk.sums.drag_rate[i] = {scale * lane_sum(rate.xx), scale * lane_sum(rate.xy),
+                                  scale * lane_sum(rate.xz), scale * lane_sum(rate.yy),
+                                  scale * lane_sum(rate.yz), scale * lane_sum(rate.zz)};
+      } else {
+        add_forces(NothingBesides{});
+      }
+      if constexpr (Parts::kCorrected && viscosity != Viscosity::kNone) {
+        if (!boundary.mirror.empty())
+          add_forces_on_mirror<Parts, viscosity>(boundary, i, context.kinds.front().viscosity, fluid_columns,
+                                                 rows, h, shape, sum);
+      }
+      walk.sums.force[i] = scale * glm::vec3(lane_sum(sum.x), lane_sum(sum.y), lane_sum(sum.z));
+      walk.sums.couple[i] = scale * glm::vec3(lane_sum(sum.cx), lane_sum(sum.cy), lane_sum(sum.cz));
+    }
+  }
 }
 
 }  // namespace
@@ -37,41 +79,10 @@ void sum_body_wrenches(PassContext& context, ThreadTeam& team, const FluidPartic
   scratch.force.resize(count);
   scratch.couple.resize(count);
   if (!drags.empty()) scratch.drag_rate.resize(count);
-  const NeighborColumns fluid_columns = columns(fluid);
-  const NeighborColumns own = columns(boundary);
-  const DragShape<FloatBatch> shape = in_all_lanes(context.drag_shape);
-  const FloatBatch beyond(1.0f - context.correction.wall_layer);
+  const SurfaceWalk walk{context, fluid, boundary, wanted, scratch, !drags.empty()};
   with_physics(context.plan, [&]<class Parts, Viscosity viscosity>() {
-    team.run(runs.size(), kForceRunsPerChunk, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t r = begin; r < end; ++r) {
-        const RowList rows = fluid.index.rows(context.grid, runs[r].cell);
-        for (std::uint32_t i = runs[r].particles.begin; i < runs[r].particles.end; ++i) {
-          scratch.force[i] = scratch.couple[i] = glm::vec3(0.0f);
-          if (!drags.empty()) scratch.drag_rate[i] = {};
-          if (rows.count == 0 || !wanted[boundary.body[i]]) continue;
-          const FloatBatch none(0.0f), h(boundary.reach[i]);
-          SurfaceSum<FloatBatch> sum{{none, none, none}, none, none, none, beyond};
-          const WallViscosity wall = wall_viscosity(boundary.viscosity[i]);
-          const ParticleView<FloatBatch> self =
-              broadcast(own, i, own_viscosity<viscosity>(wall, context.kinds.front().viscosity));
-          add_row_forces<Parts, Parts::kOnBodies, viscosity>(self, fluid_columns, rows, h, shape, sum,
-                                                             FloatBatch(wall.of_fluid));
-          if constexpr (Parts::kCorrected && viscosity != Viscosity::kNone) {
-            if (!boundary.mirror.empty())
-              add_forces_on_mirror<Parts, viscosity>(boundary, i, context.kinds.front().viscosity,
-                                                     fluid_columns, rows, h, shape, sum);
-          }
-          const float scale = context.force_scale;
-          scratch.force[i] = scale * glm::vec3(lane_sum(sum.x), lane_sum(sum.y), lane_sum(sum.z));
-          scratch.couple[i] = scale * glm::vec3(lane_sum(sum.cx), lane_sum(sum.cy), lane_sum(sum.cz));
-          if constexpr (viscosity != Viscosity::kNone) {
-            if (!drags.empty())
-              scratch.drag_rate[i] =
-                  drag_rate<Parts, viscosity>(self, fluid_columns, rows, h, shape, scale, wall.of_fluid);
-          }
-        }
-      }
-    });
+    team.run(runs.size(), kForceRunsPerChunk,
+             [&](std::size_t begin, std::size_t end) { find_sums<Parts, viscosity>(walk, begin, end); });
   });
   // One fixed order (that of the cells), so that the sum does not depend on the threads.
   for (std::size_t i = 0; i < count; ++i) {
