@@ -64,15 +64,16 @@ void compute_corrected_density(PassContext& context, ThreadTeam& team, FluidPart
 /// `press`, which is from the density pass.
 void compute_fluid_forces(PassContext& context, ThreadTeam& team, FluidParticles& fluid,
                           const BoundaryParticles& fixed, const BoundaryParticles& moving, double dt,
-                          FluidViscosity& drag, const FluidPress& press);
+                          FluidViscosity& drag, FluidPress& press);
 
 /// The same with kImplicitViscosity (force.cpp calls it).
 void compute_forces_by_rows(PassContext& context, ThreadTeam& team, FluidParticles& fluid,
                             const BoundaryParticles& fixed, const BoundaryParticles& moving, double dt,
                             FluidViscosity& drag, const FluidPress& press);
 
-/// What each body particle feels, in the order of the cells.
+/// What each body particle feels, in the order of the cells; of runs without fluid in reach nothing.
 struct SurfaceSums {
+  std::vector<char> met;                    // a run of boundary particles: fluid is in reach
   std::vector<glm::vec3> force;             // N
   std::vector<glm::vec3> couple;            // N·m, of what bears elsewhere (SurfaceSum)
   std::vector<Symmetric<float>> drag_rate;  // N·s/m
@@ -87,9 +88,9 @@ void sum_body_wrenches(PassContext& context, ThreadTeam& team, const FluidPartic
                        std::span<BodyDrag> drags);
 
 /// Adds to the forces on the fluid the viscous force of moving body particles by the velocities that they
-/// have now.
+/// have now; `press` is from the force pass.
 void drag_fluid(PassContext& context, ThreadTeam& team, FluidParticles& fluid,
-                const BoundaryParticles& moving);
+                const BoundaryParticles& moving, const FluidPress& press);
 
 /// The bodies of the penetration clamp in a sub-step, and what it takes from particles.
 struct WallClamps {

@@ -11,15 +11,15 @@ namespace {
 // over in memory.
 template <class Parts>
 __attribute__((flatten)) void drag_chunk(const PassContext& context, FluidParticles& fluid,
-                                         const BoundaryParticles& moving, std::size_t begin,
-                                         std::size_t end) {
+                                         const BoundaryParticles& moving, const FluidPress& press,
+                                         std::size_t begin, std::size_t end) {
   const std::vector<CellRun>& runs = fluid.index.runs();
   const NeighborColumns fluid_columns = columns(fluid);
   const NeighborColumns moving_columns = columns(moving);
   const FloatBatch h(context.support_radius);
   const DragShape<FloatBatch> shape = in_all_lanes(context.drag_shape);
   for (std::size_t r = begin; r < end; ++r) {
-    const RowList rows = moving.index.rows(context.grid, runs[r].cell);
+    const RowList& rows = press.near[r].moving;
     if (!rows.count) continue;
     for (std::uint32_t p = runs[r].particles.begin; p < runs[r].particles.end; ++p) {
       const ParticleView<FloatBatch> self =
@@ -41,10 +41,10 @@ __attribute__((flatten)) void drag_chunk(const PassContext& context, FluidPartic
 }  // namespace
 
 void drag_fluid(PassContext& context, ThreadTeam& team, FluidParticles& fluid,
-                const BoundaryParticles& moving) {
+                const BoundaryParticles& moving, const FluidPress& press) {
   with_model(context.plan.model, [&]<class Parts>() {
     team.run(fluid.index.runs().size(), kForceRunsPerChunk, [&](std::size_t begin, std::size_t end) {
-      drag_chunk<Parts>(context, fluid, moving, begin, end);
+      drag_chunk<Parts>(context, fluid, moving, press, begin, end);
     });
   });
 }
@@ -53,7 +53,7 @@ namespace passes {
 
 void body_drag_on_cpu(CpuState& s, const PassInputs& in) {
   s.moving.set_velocities(s.bodies, in.changes);
-  drag_fluid(s.context, s.team, s.fluid, s.moving.sorted());
+  drag_fluid(s.context, s.team, s.fluid, s.moving.sorted(), s.pairs);
 }
 
 }  // namespace passes

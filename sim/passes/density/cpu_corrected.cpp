@@ -4,7 +4,6 @@
 #include <cstring>
 
 #include "sim/cpu/passes.h"
-#include "sim/cpu/row_batches.h"
 #include "sim/model.h"
 #include "sim/passes/fluid_stress/fluid_stress.h"
 #include "sim/passes/pressure_solve/cpu_pairs.h"
@@ -157,8 +156,7 @@ class Finish {
   explicit Finish(const Work& work) : w_(work) {}
 
   // Returns the compression.
-  float operator()(std::uint32_t p, const OwnSums& s, const RowList& fixed_rows,
-                   const RowList& moving_rows) const {
+  float operator()(std::uint32_t p, const OwnSums& s, const NearRows& near) const {
     const FluidParticles& fluid = w_.fluid;
     const float own = own_;
     const float v[3] = {fluid.vx[p], fluid.vy[p], fluid.vz[p]};
@@ -184,11 +182,11 @@ class Finish {
     float no_slip = 0.0f;
     const Vector3<float> by_fluid{s.slope[0], s.slope[1], s.slope[2]};
     Vector3<float> pushed = by_fluid;
-    if (fixed_rows.count + moving_rows.count > 0) {
+    if (!near.empty()) {
       const FloatBatch z(0.0f);
       WallSums walls{{z, {z, z, z, z, z, z}, z, z, z, z, z, z, z}, {z, z, z}, z};
-      add_walls<stresses>(w_, p, w_.fixed, fixed_rows, walls);
-      add_walls<stresses>(w_, p, w_.moving, moving_rows, walls);
+      add_walls<stresses>(w_, p, w_.fixed, near.fixed, walls);
+      add_walls<stresses>(w_, p, w_.moving, near.moving, walls);
       if constexpr (stresses) no_slip = lane_sum(walls.no_slip) / w_.context.rest_volume;
       n.number += lane_sum(walls.sum.number);
       const auto& m = walls.sum.moment;
@@ -287,8 +285,7 @@ __attribute__((flatten)) float find_chunk(const Work& w, std::size_t begin, std:
   const Finish<flows, stresses> finish(w);
   PairRows::Writer writer(w.press.rows, begin / kRunsPerChunk);
   float densest = 0.0f;
-  std::uint32_t cell = grid.retired_key();
-  RowList fixed_rows, moving_rows;
+  std::size_t found = begin;  // runs whose NearRows are there
   const auto put = [&] {
     GroupSums sums;
     const PairRows::Walk group = weigh<flows>(w, writer, sums);
@@ -296,14 +293,13 @@ __attribute__((flatten)) float find_chunk(const Work& w, std::size_t begin, std:
     std::memcpy(floats, &sums, sizeof sums);
     for (std::uint32_t a = 0; a < group.count; ++a) {
       const std::uint32_t p = group.first + a;
-      if (w.fluid.key[p] != cell) {
-        cell = w.fluid.key[p];
-        fixed_rows = w.fixed.index.rows(grid, cell);
-        moving_rows = w.moving.index.rows(grid, cell);
+      if (found == begin || p >= runs[found - 1].particles.end) {
+        w.press.near[found].find(grid, w.fluid, runs[found], w.fixed, w.moving);
+        ++found;
       }
       const auto own = [&](int sum) { return floats[sum] + 4 * a; };
       densest = std::max(densest, finish(p, {own(0), own(1), own(2), own(3), own(4), own(5), own(6), own(7)},
-                                         fixed_rows, moving_rows));
+                                         w.press.near[found - 1]));
     }
   };
   for (std::size_t r = begin; r < end; ++r) {
@@ -324,6 +320,7 @@ void compute_corrected_density(PassContext& context, ThreadTeam& team, FluidPart
   const Work work{context, fluid, fixed, moving, press};
   const std::size_t runs = fluid.index.runs().size();
   press.clear(fluid.index.particles(), chunk_count(runs, kRunsPerChunk));
+  if (press.near.size() < runs) press.near.resize(runs);
   place(work, team);
   const bool flows = any_artificial_viscosity(context.kinds, context.correction.artificial_viscosity);
   const bool stresses = context.plan.has(PassId::kFluidStress);

@@ -7,7 +7,6 @@
 #include "sim/cpu/passes.h"
 #include "sim/cpu/state.h"
 #include "sim/passes/pressure_force/pressure_loop.h"
-#include "sim/passes/pressure_force/row_force.h"
 #include "sim/passes/pressure_solve/cpu.h"
 #include "sim/passes/walls/row_mirror.h"
 
@@ -22,6 +21,7 @@ struct FluidWalk {
   FluidParticles& fluid;
   const BoundaryParticles& fixed;
   const BoundaryParticles& moving;
+  FluidPress& press;
 };
 
 // One chunk of runs. All of a pair in one loop: left to itself the compiler calls functions and hands batches
@@ -40,12 +40,11 @@ __attribute__((flatten)) void find_forces_of(const FluidWalk& walk, std::size_t 
   const FloatBatch h(context.support_radius);
   const DragShape<FloatBatch> shape = in_all_lanes(context.drag_shape);
   for (std::size_t r = begin; r < end; ++r) {
-    const RowList fixed_rows = walk.fixed.index.rows(context.grid, runs[r].cell);
-    const RowList moving_rows = walk.moving.index.rows(context.grid, runs[r].cell);
-    const bool near_wall = fixed_rows.count + moving_rows.count > 0;
+    NearRows& near = walk.press.near[r];
     const ParticleRange own = runs[r].particles;
-    std::fill(fluid.near_wall.begin() + own.begin, fluid.near_wall.begin() + own.end, near_wall);
-    if (Parts::kCorrected && (!near_wall || viscosity == Viscosity::kNone)) continue;
+    if constexpr (!Parts::kCorrected) near.find(context.grid, fluid, runs[r], walk.fixed, walk.moving);
+    std::fill(fluid.near_wall.begin() + own.begin, fluid.near_wall.begin() + own.end, near.around);
+    if (Parts::kCorrected && (near.empty() || viscosity == Viscosity::kNone)) continue;
     RowList fluid_rows;
     if constexpr (!Parts::kCorrected) fluid_rows = fluid.index.rows(context.grid, runs[r].cell);
     for (std::uint32_t p = own.begin; p < own.end; ++p) {
@@ -54,15 +53,15 @@ __attribute__((flatten)) void find_forces_of(const FluidWalk& walk, std::size_t 
       ForceSum<FloatBatch> sum{FloatBatch(0.0f), FloatBatch(0.0f), FloatBatch(0.0f)};
       if constexpr (!Parts::kCorrected)
         add_row_forces<Parts, Parts::kFluids, viscosity>(self, fluid_columns, fluid_rows, h, shape, sum);
-      if (fixed_rows.count)
-        add_row_forces<Parts, kWalls, kAgainstBodies, Neighbours::kWalls>(self, fixed_columns, fixed_rows, h,
+      if (near.fixed.count)
+        add_row_forces<Parts, kWalls, kAgainstBodies, Neighbours::kWalls>(self, fixed_columns, near.fixed, h,
                                                                           shape, sum);
-      if (moving_rows.count)
-        add_row_forces<Parts, kWalls, kAgainstBodies, Neighbours::kWalls>(self, moving_columns, moving_rows,
+      if (near.moving.count)
+        add_row_forces<Parts, kWalls, kAgainstBodies, Neighbours::kWalls>(self, moving_columns, near.moving,
                                                                           h, shape, sum);
       if constexpr (Parts::kCorrected && viscosity != Viscosity::kNone) {
-        if (!walk.fixed.mirror.empty() && fixed_rows.count)
-          add_mirror_forces<Parts>(self, walk.fixed, fixed_rows, h, shape, sum);
+        if (!walk.fixed.mirror.empty() && near.fixed.count)
+          add_mirror_forces<Parts>(self, walk.fixed, near.fixed, h, shape, sum);
       }
       const float scale = context.force_scale;
       const auto put = [](float& force, float found) { force = Parts::kCorrected ? force + found : found; };
@@ -83,7 +82,8 @@ void find_forces(const FluidWalk& walk) {
 // By fluid, and what one's own pressure pushes by, walls among those that bear it. With pressure projection
 // pressures push later. Pairs of one viscosity need u alone, but where fluid has a particle stress.
 template <class Parts, Viscosity viscosity, bool stresses>
-void forces_by_rows(const FluidWalk& walk, const FluidPress& press) {
+void forces_by_rows(const FluidWalk& walk) {
+  const FluidPress& press = walk.press;
   constexpr bool kPresses = !Parts::kSolved;
   FluidParticles& fluid = walk.fluid;
   const float h = walk.context.support_radius, scale = kCentralDrag * walk.context.force_scale;
@@ -125,19 +125,20 @@ void forces_by_rows(const FluidWalk& walk, const FluidPress& press) {
 
 void compute_fluid_forces(PassContext& context, ThreadTeam& team, FluidParticles& fluid,
                           const BoundaryParticles& fixed, const BoundaryParticles& moving, double dt,
-                          FluidViscosity& drag, const FluidPress& press) {
+                          FluidViscosity& drag, FluidPress& press) {
   if (context.plan.has(PassId::kImplicitViscosity)) {
     compute_forces_by_rows(context, team, fluid, fixed, moving, dt, drag, press);
     return;
   }
-  const FluidWalk walk{context, team, fluid, fixed, moving};
+  const FluidWalk walk{context, team, fluid, fixed, moving, press};
+  if (press.near.size() < fluid.index.runs().size()) press.near.resize(fluid.index.runs().size());
   with_physics(context.plan, [&]<class Parts, Viscosity viscosity>() {
     if constexpr (Parts::kCorrected) {
       auto forces = forces_by_rows<Parts, viscosity, false>;
       if constexpr (viscosity != Viscosity::kNone) {
         if (context.plan.has(PassId::kFluidStress)) forces = forces_by_rows<Parts, viscosity, true>;
       }
-      forces(walk, press);
+      forces(walk);
     }
     find_forces<Parts, viscosity>(walk);
   });

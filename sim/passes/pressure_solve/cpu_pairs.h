@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "sim/cpu/pair_rows.h"
+#include "sim/passes/pressure_force/near_rows.h"
 
 namespace slosh {
 
@@ -19,6 +20,8 @@ struct alignas(64) Passed {
 /// What the density pass of the corrected and of the incompressible model writes down of fluid particles,
 /// four entries more than there are particles.
 struct FluidPress {
+  /// One a run of fluid, and more; in the published model from `pressure_force`.
+  std::vector<NearRows> near;
   PairRows rows;
   std::vector<Vector4> places;      ///< m, with 0 for a fourth
   std::vector<Vector4> velocities;  ///< m/s, with 1 for a fourth

@@ -1,7 +1,9 @@
 // Eq 5, 6 and 9 on body particles, summed by Eq 10–12.
+#include <algorithm>
+
 #include "sim/cpu/passes.h"
 #include "sim/cpu/state.h"
-#include "sim/passes/pressure_force/row_force.h"
+#include "sim/passes/pressure_force/near_rows.h"
 #include "sim/passes/walls/row_mirror.h"
 
 namespace slosh {
@@ -24,17 +26,23 @@ __attribute__((flatten)) void find_sums(const SurfaceWalk& walk, std::size_t beg
   const PassContext& context = walk.context;
   const BoundaryParticles& boundary = walk.boundary;
   const std::vector<CellRun>& runs = boundary.index.runs();
-  const NeighborColumns fluid_columns = columns(walk.fluid);
   const NeighborColumns own = columns(boundary);
+  const NeighborColumns fluid_columns = columns(walk.fluid);
   const DragShape<FloatBatch> shape = in_all_lanes(context.drag_shape);
   const FloatBatch beyond(1.0f - context.correction.wall_layer);
   const float scale = context.force_scale;
   for (std::size_t r = begin; r < end; ++r) {
-    const RowList rows = walk.fluid.index.rows(context.grid, runs[r].cell);
-    for (std::uint32_t i = runs[r].particles.begin; i < runs[r].particles.end; ++i) {
-      walk.sums.force[i] = walk.sums.couple[i] = glm::vec3(0.0f);
-      if (walk.drags) walk.sums.drag_rate[i] = {};
-      if (rows.count == 0 || !walk.wanted[boundary.body[i]]) continue;
+    RowList rows = walk.fluid.index.rows(context.grid, runs[r].cell);
+    const ParticleRange range = runs[r].particles;
+    float h_most = 0.0f;  // of those that are wanted
+    for (std::uint32_t i = range.begin; i < range.end && rows.count > 0; ++i) {
+      if (walk.wanted[boundary.body[i]]) h_most = std::max(h_most, boundary.reach[i]);
+    }
+    if (rows.count > 0) rows = CellBox(own, range).in_reach(fluid_columns, rows, h_most);
+    walk.sums.met[r] = rows.count > 0;
+    if (rows.count == 0) continue;
+    for (std::uint32_t i = range.begin; i < range.end; ++i) {
+      if (!walk.wanted[boundary.body[i]]) continue;
       const FloatBatch none(0.0f), h(boundary.reach[i]);
       SurfaceSum<FloatBatch> sum{{none, none, none}, none, none, none, beyond};
       Symmetric<FloatBatch> rate{none, none, none, none, none, none};
@@ -76,6 +84,7 @@ void sum_body_wrenches(PassContext& context, ThreadTeam& team, const FluidPartic
   const std::vector<CellRun>& runs = boundary.index.runs();
   const std::size_t count = boundary.index.particles();
   if (count == 0) return;
+  scratch.met.resize(runs.size());
   scratch.force.resize(count);
   scratch.couple.resize(count);
   if (!drags.empty()) scratch.drag_rate.resize(count);
@@ -85,16 +94,19 @@ void sum_body_wrenches(PassContext& context, ThreadTeam& team, const FluidPartic
              [&](std::size_t begin, std::size_t end) { find_sums<Parts, viscosity>(walk, begin, end); });
   });
   // One fixed order (that of the cells), so that the sum does not depend on the threads.
-  for (std::size_t i = 0; i < count; ++i) {
-    const int body = boundary.body[i];
-    if (!wanted[body]) continue;
-    const glm::dvec3 force(scratch.force[i]);
-    const glm::dvec3 arm = glm::dvec3(boundary.x[i], boundary.y[i], boundary.z[i]) - centers[body];
-    wrenches[body].force += force;
-    wrenches[body].torque += glm::cross(arm, force) + glm::dvec3(scratch.couple[i]);
-    if (drags.empty()) continue;
-    const Symmetric<float>& rate = scratch.drag_rate[i];
-    drags[body].add({rate.xx, rate.xy, rate.xz, rate.yy, rate.yz, rate.zz}, arm);
+  for (std::size_t r = 0; r < runs.size(); ++r) {
+    if (!scratch.met[r]) continue;
+    for (std::uint32_t i = runs[r].particles.begin; i < runs[r].particles.end; ++i) {
+      const int body = boundary.body[i];
+      if (!wanted[body]) continue;
+      const glm::dvec3 force(scratch.force[i]);
+      const glm::dvec3 arm = glm::dvec3(boundary.x[i], boundary.y[i], boundary.z[i]) - centers[body];
+      wrenches[body].force += force;
+      wrenches[body].torque += glm::cross(arm, force) + glm::dvec3(scratch.couple[i]);
+      if (drags.empty()) continue;
+      const Symmetric<float>& rate = scratch.drag_rate[i];
+      drags[body].add({rate.xx, rate.xy, rate.xz, rate.yy, rate.yz, rate.zz}, arm);
+    }
   }
 }
 
