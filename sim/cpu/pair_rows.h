@@ -89,10 +89,12 @@ class PairRows {
       row_->count = static_cast<std::size_t>(end - row_->other.data());
       return ++group_.count == kTogether;
     }
-    /// Matrix3 are waiting for put_weighed().
+    /// Rows are waiting for put_weighed().
     bool waits() const { return group_.count > 0; }
-    /// f(first, others), of a pair of each, gives their weights, each four times. Matrix3 are filled up with
-    /// `nobody`, who must weigh nothing. Returns the group.
+    /// The first of those whose rows wait.
+    std::uint32_t first() const { return group_.first; }
+    /// f(others), of a pair of each, gives their weights, each four times. Rows are filled up with `nobody`,
+    /// who must weigh nothing. Returns the group.
     template <class F>
     Walk put_weighed(std::uint32_t nobody, F&& f);
     /// Room for a group's pairs of other rows, to be written again as they lie there with weights of their
@@ -212,7 +214,7 @@ class PairRows {
     /// Four floats of each of the group, `stride` floats from one particle to the next.
     template <std::size_t stride>
     static Sixteen of_group(const float* v) {
-      return side_by_side(four_at(v), four_at(v + stride), four_at(v + 2 * stride), four_at(v + 3 * stride));
+      return side_by_side(v, v + stride, v + 2 * stride, v + 3 * stride);
     }
     /// f(d, pairs) of a pair of each; d's fourths are 0.
     template <class F>
@@ -224,9 +226,7 @@ class PairRows {
     /// Four floats of each other, of `all` that have `stride` each.
     template <std::size_t stride>
     static Sixteen of_others(const float* all, const Others& others) {
-      const auto at = [&](std::size_t k) {
-        return four_at(all + stride * static_cast<std::uint32_t>(others[k]));
-      };
+      const auto at = [&](std::size_t k) { return all + stride * static_cast<std::uint32_t>(others[k]); };
       return side_by_side(at(0), at(1), at(2), at(3));
     }
     template <std::size_t stride>
@@ -272,10 +272,9 @@ PairRows::Walk PairRows::Writer::put_weighed(std::uint32_t nobody, F&& f) {
   }
   chunk_.make_room(kTogether * longest);
   Pair* to = chunk_.pairs.data() + chunk_.size;
-  const std::uint32_t first = group_.first;
   for (std::size_t k = 0; k < longest; ++k, to += kTogether) {
     const Others four{others[0][k], others[1][k], others[2][k], others[3][k]};
-    put_pairs(f(first, four), four.data(), to);
+    put_pairs(f(four), four.data(), to);
   }
   close_group(kTogether * longest);
   return {chunk_.groups.back(), chunk_.pairs.data()};

@@ -87,18 +87,18 @@ void write_weighed(const Crowd& crowd, PairRows& rows) {
   rows.clear(1);
   PairRows::Writer writer(rows, 0);
   const auto put = [&] {
-    writer.put_weighed(static_cast<std::uint32_t>(crowd.count),
-                       [&](std::uint32_t first, const PairRows::Others& others) {
-                         float of[16];
-                         for (std::uint32_t a = 0; a < 4; ++a) {
-                           const auto other = static_cast<std::size_t>(others[a]);
-                           const float w = other == crowd.count ? 0.0f : weight_of(first + a, other);
-                           std::fill_n(of + 4 * a, 4, w);
-                         }
-                         Sixteen weights;
-                         std::memcpy(&weights, of, sizeof weights);
-                         return weights;
-                       });
+    const std::uint32_t first = writer.first();
+    writer.put_weighed(static_cast<std::uint32_t>(crowd.count), [&](const PairRows::Others& others) {
+      float of[16];
+      for (std::uint32_t a = 0; a < 4; ++a) {
+        const auto other = static_cast<std::size_t>(others[a]);
+        const float w = other == crowd.count ? 0.0f : weight_of(first + a, other);
+        std::fill_n(of + 4 * a, 4, w);
+      }
+      Sixteen weights;
+      std::memcpy(&weights, of, sizeof weights);
+      return weights;
+    });
   };
   for (std::size_t p = 0; p < crowd.count; ++p) {
     std::int32_t* to = writer.begin(static_cast<std::uint32_t>(p), crowd.count);

@@ -88,26 +88,25 @@ PairRows::Walk weigh(const Work& w, PairRows::Writer& writer, GroupSums& sum) {
   Sixteen even = {}, odd = {}, slopes = {}, velocity = {};
   Sixteen offset = {}, carried = {}, carried_odd = {}, carried_back = {};
   const auto nobody = static_cast<std::uint32_t>(w.fluid.index.particles());
-  const PairRows::Walk group =
-      writer.put_weighed(nobody, [&](std::uint32_t first, const PairRows::Others& others) {
-        const Sixteen d = PairRows::Walk::of_group<4>(places + std::size_t{4} * first) -
-                          PairRows::Walk::of_others<4>(places, others);
-        const Sixteen r_squared = sums(d * d) + floor, inverse_r = inverse_roots(r_squared);
-        const Sixteen reach = at_least_zero(h - r_squared * inverse_r);
-        const Sixteen squared = reach * reach, slope = squared * inverse_r, weighed = slope * d;
-        even += weighed * d;
-        odd += weighed * turned(d);
-        slopes += weighed;
-        const Sixteen near = squared * reach, v = PairRows::Walk::of_others<4>(velocities, others);
-        velocity += near * v;
-        if constexpr (flows) {
-          offset += near * d;
-          carried += weighed * v;
-          carried_odd += weighed * turned(v);
-          carried_back += weighed * turned_back(v);
-        }
-        return slope;
-      });
+  const Sixteen self = PairRows::Walk::of_group<4>(places + std::size_t{4} * writer.first());
+  const PairRows::Walk group = writer.put_weighed(nobody, [&](const PairRows::Others& others) {
+    const Sixteen d = self - PairRows::Walk::of_others<4>(places, others);
+    const Sixteen r_squared = sums(d * d) + floor, inverse_r = inverse_roots(r_squared);
+    const Sixteen reach = at_least_zero(h - r_squared * inverse_r);
+    const Sixteen squared = reach * reach, slope = squared * inverse_r, weighed = slope * d;
+    even += weighed * d;
+    odd += weighed * turned(d);
+    slopes += weighed;
+    const Sixteen near = squared * reach, v = PairRows::Walk::of_others<4>(velocities, others);
+    velocity += near * v;
+    if constexpr (flows) {
+      offset += near * d;
+      carried += weighed * v;
+      carried_odd += weighed * turned(v);
+      carried_back += weighed * turned_back(v);
+    }
+    return slope;
+  });
   sum = {even, odd, slopes, velocity, offset, carried, carried_odd, carried_back};
   return group;
 }
