@@ -18,6 +18,10 @@ inline constexpr std::size_t kLanes = FloatBatch::size;
 template <>
 struct RealOps<FloatBatch> {
   static FloatBatch positive_part(FloatBatch x) { return xsimd::max(x, FloatBatch(0.0f)); }
+  static FloatBatch where_less(FloatBatch a, FloatBatch b, FloatBatch yes, FloatBatch no) {
+    return xsimd::select(a < b, yes, no);
+  }
+  static FloatBatch root(FloatBatch x) { return xsimd::sqrt(x); }
   // The hardware's estimate has 12 to 14 bits; one Newton step brings it to within a few last places.
   static FloatBatch inverse_sqrt(FloatBatch x) {
 #ifdef __AVX512F__

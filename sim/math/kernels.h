@@ -9,11 +9,14 @@
 
 namespace slosh {
 
-/// The two operations on Real that are spelled differently for a number and for a SIMD batch.
-/// sim/cpu/simd.h specialises it for batches.
+/// The operations on Real that are spelled differently for a number and for a SIMD batch. sim/cpu/simd.h
+/// specialises it for batches.
 template <class Real>
 struct RealOps {
   SLOSH_HD static Real positive_part(Real x) { return x > Real(0) ? x : Real(0); }
+  /// a < b ? yes : no
+  SLOSH_HD static Real where_less(Real a, Real b, Real yes, Real no) { return a < b ? yes : no; }
+  SLOSH_HD static Real root(Real x) { return std::sqrt(x); }
   /// 1/√x for x > 0, to the last bits of Real.
   SLOSH_HD static Real inverse_sqrt(Real x) {
 #ifdef __CUDA_ARCH__

@@ -41,11 +41,12 @@ inline constexpr double kNoneOfIt = 1.25;
 /// The artificial viscosity of a fluid of `viscosity`, Pa·s, of the `noise` that an inviscid one needs: none
 /// where its own is larger. The two shares were chosen before neighbour_flow.h, for the torque between
 /// cylinders of 1 Pa·s.
-SLOSH_HD inline float artificial_viscosity_left(float noise, float viscosity) {
+template <class Real>
+SLOSH_HD Real artificial_viscosity_left(float noise, Real viscosity) {
   constexpr auto kNone = static_cast<float>(kNoneOfIt);
   constexpr auto kWay = static_cast<float>(kNoneOfIt - kAllOfIt);
-  const float left = (kNone * noise - viscosity) / kWay;
-  return left > noise ? noise : RealOps<float>::positive_part(left);
+  const Real left = (kNone * noise - viscosity) / kWay;
+  return RealOps<Real>::where_less(Real(noise), left, Real(noise), RealOps<Real>::positive_part(left));
 }
 
 /// In an impact it is more: fluctuations of more than this share of the speed of sound are damped by this
@@ -64,33 +65,34 @@ inline double impact_growth(const Plan& plan) {
 /// The artificial viscosity, Pa·s, of a fluctuation of `speed` m/s, in a fluid whose own is `artificial`
 /// below the impact speed: `noise` in thin fluid, nothing in thick. `growth`: s/m; `most`: the explicit
 /// viscosity that a step bears, of which the fluid's own `viscosity` is a part.
-SLOSH_HD inline float artificial_viscosity_in_impact(float artificial, float noise, float growth, float speed,
-                                                     float viscosity, float most) {
+template <class Real>
+SLOSH_HD Real artificial_viscosity_in_impact(Real artificial, float noise, float growth, Real speed,
+                                             Real viscosity, float most) {
   constexpr auto kQuietPart = static_cast<float>(kImpactGrowth * kImpactSpeed);
-  const float more = RealOps<float>::positive_part(growth * speed - kQuietPart);
-  const float grown = artificial * (1.0f + more) + (noise - artificial) * more;
-  const float left = most - viscosity;
-  return grown <= left ? grown : left > artificial ? left : artificial;
+  const Real more = RealOps<Real>::positive_part(growth * speed - kQuietPart);
+  const Real grown = artificial * (1.0f + more) + (noise - artificial) * more;
+  const Real left = most - viscosity;
+  const Real most_of_it = RealOps<Real>::where_less(artificial, left, left, artificial);
+  return RealOps<Real>::where_less(left, grown, most_of_it, grown);
 }
 
 /// Adds factor · (v less the mean velocity of its fluid neighbours) to u. `own`: W(0) as the neighbourhood
 /// counted the particle itself. Nothing for one that is alone.
-SLOSH_HD inline void add_fluctuation(const Neighborhood<float>& n, float own, float factor,
-                                     const float (&v)[3], float (&u)[3]) {
-  const float others = n.fluid_number - own;
-  if (others < 1e-3f * own) return;
-  const float f = factor / others;
+template <class Real>
+SLOSH_HD void add_fluctuation(const Neighborhood<Real>& n, float own, Real factor, const Real (&v)[3],
+                              Real (&u)[3]) {
+  const Real others = n.fluid_number - own;
+  const Real f = RealOps<Real>::where_less(others, Real(1e-3f * own), Real(0.0f), factor / others);
   u[0] += f * (n.fluid_number * v[0] - n.vx);
   u[1] += f * (n.fluid_number * v[1] - n.vy);
   u[2] += f * (n.fluid_number * v[2] - n.vz);
 }
 
 /// Subtracts from that the part that the neighbours' flow explains (neighbour_flow.h).
-SLOSH_HD inline void follow_fluctuation(const Neighborhood<float>& n, float own, float factor,
-                                        float (&u)[3]) {
-  const float others = n.fluid_number - own;
-  if (others < 1e-3f * own) return;
-  const float f = factor / others;
+template <class Real>
+SLOSH_HD void follow_fluctuation(const Neighborhood<Real>& n, float own, Real factor, Real (&u)[3]) {
+  const Real others = n.fluid_number - own;
+  const Real f = RealOps<Real>::where_less(others, Real(1e-3f * own), Real(0.0f), factor / others);
   u[0] -= f * n.fx;
   u[1] -= f * n.fy;
   u[2] -= f * n.fz;

@@ -32,29 +32,33 @@ SLOSH_HD void add_flow(const Real (&d)[3], const Real (&v)[3], Real h, FlowSums<
 }
 
 /// What those are for one particle.
+template <class Real = float>
 struct FlowAround {
-  Vector3<float> offset;   ///< Σ W d, m
-  Matrix3<float> carried;  ///< Σ (v_p − v_i) ⊗ d (−W'/r)
+  Vector3<Real> offset;   ///< Σ W d, m
+  Matrix3<Real> carried;  ///< Σ (v_p − v_i) ⊗ d (−W'/r)
 };
 
 /// `v`: the particle's, m/s.
-SLOSH_HD inline FlowAround flow_around(const FlowSums<float>& sum, const float (&v)[3]) {
+template <class Real>
+SLOSH_HD FlowAround<Real> flow_around(const FlowSums<Real>& sum, const Real (&v)[3]) {
   const auto row = [&](int j) {
-    return Vector3<float>{v[j] * sum.slope[0] - sum.carried[j][0], v[j] * sum.slope[1] - sum.carried[j][1],
-                          v[j] * sum.slope[2] - sum.carried[j][2]};
+    return Vector3<Real>{v[j] * sum.slope[0] - sum.carried[j][0], v[j] * sum.slope[1] - sum.carried[j][1],
+                         v[j] * sum.slope[2] - sum.carried[j][2]};
   };
   return {{sum.offset[0], sum.offset[1], sum.offset[2]}, {row(0), row(1), row(2)}};
 }
 
 /// Σ d ⊗ d (−W'/r) by fluid alone, over the rest lattice's, and its inverse.
+template <class Real = float>
 struct InverseMoment {
-  Symmetric<float> whole;    ///< the moment itself
-  Symmetric<float> inverse;  ///< of what unflattened() makes of it
-  float kept;                ///< by how much it was flat enough for that to be itself, 0 to 1
+  Symmetric<Real> whole;    ///< the moment itself
+  Symmetric<Real> inverse;  ///< of what unflattened() makes of it
+  Real kept;                ///< by how much it was flat enough for that to be itself, 0 to 1
 };
-SLOSH_HD inline InverseMoment inverse_moment(const Symmetric<float>& moment, float rest_moment) {
-  InverseMoment found;
-  Symmetric<float> upright = found.whole = scaled_and_shifted(moment, 1.0f / rest_moment, 0.0f);
+template <class Real>
+SLOSH_HD InverseMoment<Real> inverse_moment(const Symmetric<Real>& moment, float rest_moment) {
+  InverseMoment<Real> found;
+  Symmetric<Real> upright = found.whole = scaled_and_shifted(moment, Real(1.0f / rest_moment), Real(0.0f));
   found.kept = unflattened(upright);
   found.inverse = inverse(upright);
   return found;
@@ -63,12 +67,13 @@ SLOSH_HD inline InverseMoment inverse_moment(const Symmetric<float>& moment, flo
 /// What Σ W v over the neighbours gains on the way from their middle to the particle, along G = Σ (v_p − v_i)
 /// ⊗ d (−W'/r) M⁻¹: exact where they flow linearly. Where M is near singular (a layer, a thread, a drop of a
 /// few) it is as much less. `rest_moment`: Σ x² (−W'/r) over the rest lattice. To n.fx, fy, fz.
-SLOSH_HD inline void follow_flow(const FlowAround& flow, const InverseMoment& moment, float rest_moment,
-                                 Neighborhood<float>& n) {
-  const float scale = moment.kept / rest_moment;
-  const Vector3<float> to =
+template <class Real>
+SLOSH_HD void follow_flow(const FlowAround<Real>& flow, const InverseMoment<Real>& moment, float rest_moment,
+                          Neighborhood<Real>& n) {
+  const Real scale = moment.kept / rest_moment;
+  const Vector3<Real> to =
       times(moment.inverse, scale * flow.offset.x, scale * flow.offset.y, scale * flow.offset.z);
-  const Vector3<float> found = times(flow.carried, to.x, to.y, to.z);
+  const Vector3<Real> found = times(flow.carried, to.x, to.y, to.z);
   n.fx = found.x;
   n.fy = found.y;
   n.fz = found.z;

@@ -26,12 +26,13 @@ struct CorrectionConstants {
   float wall_layer = 1.0f / kWallShare;  ///< share of a wall's particle in the moment (wall_layers.h)
 };
 
+template <class Real = float>
 struct CorrectedState {
-  float pressure;         ///< V² P, N·m⁴
-  float volume;           ///< m³
-  float compression;      ///< ρ/ρ⁰ − 1
-  Symmetric<float> push;  ///< N·m⁴
-  float u[3];             ///< Pa·m
+  Real pressure;         ///< V² P, N·m⁴
+  Real volume;           ///< m³
+  Real compression;      ///< ρ/ρ⁰ − 1
+  Symmetric<Real> push;  ///< N·m⁴
+  Real u[3];             ///< Pa·m
 };
 
 /// From which share of the settled moment on no neighbour is missing. Settled particles have 0.95 to 1.1 of
@@ -39,32 +40,35 @@ struct CorrectedState {
 /// press in part by an energy's gradient, and yield. A fluid without artificial viscosity counts nine
 /// tenths as all; one with it needs all (tests/notebook/2026-11-25-slow-flow-yields.md). `viscosity`: Pa·s.
 inline constexpr float kPassedOver = 0.1f;
-SLOSH_HD inline float whole_from(const CorrectionConstants& c, float viscosity) {
-  const float artificial =
+template <class Real>
+SLOSH_HD Real whole_from(const CorrectionConstants& c, Real viscosity) {
+  const Real artificial =
       artificial_viscosity_left(c.artificial_viscosity, viscosity) / c.artificial_viscosity;
   return 1.0f - kPassedOver * (1.0f - artificial);
 }
 
 /// What V² P is multiplied by. `volume`: m³; `compression`: ρ/ρ⁰ − 1; `viscosity`: the fluid's own, Pa·s.
-SLOSH_HD inline Symmetric<float> directions_of(const Neighborhood<float>& n, const CorrectionConstants& c,
-                                               float volume, float compression, float viscosity) {
-  const Symmetric<float> moment = scaled_and_shifted(n.moment, 1.0f / c.rest_moment, 0.0f);
+template <class Real>
+SLOSH_HD Symmetric<Real> directions_of(const Neighborhood<Real>& n, const CorrectionConstants& c, Real volume,
+                                       Real compression, Real viscosity) {
+  const Symmetric<Real> moment = scaled_and_shifted(n.moment, Real(1.0f / c.rest_moment), Real(0.0f));
   // The energy's gradient has V², a virial of V P has V V⁰.
-  const float virial = c.push_scale * (c.rest_volume / volume);
+  const Real virial = c.push_scale * (c.rest_volume / volume);
   return pressure_directions(moment, corrected_share(compression), virial, whole_from(c, viscosity));
 }
 
 /// Viscosity times velocity fluctuation, Pa·m. What an impact adds goes by the mean: fluid that meets a wall
 /// flows linearly, too.
-SLOSH_HD inline void set_drag(const Neighborhood<float>& n, const CorrectionConstants& c, float viscosity,
-                              float in_u, const float (&v)[3], float (&u)[3]) {
+template <class Real>
+SLOSH_HD void set_drag(const Neighborhood<Real>& n, const CorrectionConstants& c, Real viscosity, Real in_u,
+                       const Real (&v)[3], Real (&u)[3]) {
   for (int k = 0; k < 3; ++k) u[k] = in_u * v[k];
-  const float calm = artificial_viscosity_left(c.artificial_viscosity, viscosity);
-  float artificial = calm;
+  const Real calm = artificial_viscosity_left(c.artificial_viscosity, viscosity);
+  Real artificial = calm;
   if (c.impact_growth > 0.0f) {
-    float d[3] = {};
-    add_fluctuation(n, c.own_number, 1.0f, v, d);
-    const float speed = std::sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
+    Real d[3] = {Real(0.0f), Real(0.0f), Real(0.0f)};
+    add_fluctuation(n, c.own_number, Real(1.0f), v, d);
+    const Real speed = RealOps<Real>::root(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
     artificial = artificial_viscosity_in_impact(calm, c.artificial_viscosity, c.impact_growth, speed,
                                                 viscosity, c.most_drag);
   }
@@ -74,17 +78,18 @@ SLOSH_HD inline void set_drag(const Neighborhood<float>& n, const CorrectionCons
 
 /// `viscosity`: the fluid's own, Pa·s. `in_u`: the same where u is to carry it (all fluids share it and
 /// viscosity is explicit, Eq 6), else 0. `v`: m/s.
-SLOSH_HD inline CorrectedState corrected_state(const Neighborhood<float>& n, const CorrectionConstants& c,
-                                               float pressing_density, float viscosity, float in_u,
-                                               float last_volume, const float (&v)[3]) {
-  const PressureState eos = pressure_state(n.number, c.rest_number, c.rest_volume, pressing_density,
-                                           c.stiffness, c.tension, last_volume, true);
-  CorrectedState state;
+template <class Real>
+SLOSH_HD CorrectedState<Real> corrected_state(const Neighborhood<Real>& n, const CorrectionConstants& c,
+                                              Real pressing_density, Real viscosity, Real in_u,
+                                              Real last_volume, const Real (&v)[3]) {
+  const PressureState<Real> eos = pressure_state(n.number, c.rest_number, c.rest_volume, pressing_density,
+                                                 c.stiffness, c.tension, last_volume, true);
+  CorrectedState<Real> state;
   state.volume = eos.volume;
   state.compression = eos.compression;
   state.pressure = eos.pressure;
-  state.push =
-      scaled_and_shifted(directions_of(n, c, eos.volume, eos.compression, viscosity), eos.pressure, 0.0f);
+  state.push = scaled_and_shifted(directions_of(n, c, eos.volume, eos.compression, viscosity), eos.pressure,
+                                  Real(0.0f));
   set_drag(n, c, viscosity, in_u, v, state.u);
   return state;
 }

@@ -15,10 +15,11 @@ SLOSH_HD Real effective_compression(Real compression, Real tension) {
 }
 
 /// What a particle has after the density pass.
+template <class Real = float>
 struct PressureState {
-  float pressure;     ///< Pa; kCorrected: V²P, N·m⁴
-  float volume;       ///< m³
-  float compression;  ///< ρ/ρ⁰ − 1
+  Real pressure;     ///< Pa; kCorrected: V²P, N·m⁴
+  Real volume;       ///< m³
+  Real compression;  ///< ρ/ρ⁰ − 1
 };
 
 /// Bulk damping of the corrected model: this times the compression gained since the last step is felt on top
@@ -30,18 +31,20 @@ inline constexpr float kBulkDamping = 0.25f;
 /// Eq 7 from the density kernel's sum over neighbours (itself included), measured against the rest lattice's
 /// sum. `density`: kg/m³ that Eq 7 takes for the particle's fluid. `last_volume` (> 0) is the particle's
 /// volume one step ago, the rest volume at the start.
-SLOSH_HD inline PressureState pressure_state(float sum, float rest_sum, float rest_volume, float density,
-                                             float stiffness, float tension, float last_volume,
-                                             bool corrected) {
-  const float compression = sum / rest_sum - 1.0f;
-  const float effective = effective_compression(compression, tension);
-  float felt = effective;
-  if (corrected && effective > 0.0f) {
-    const float gained = effective - (rest_volume / last_volume - 1.0f);
-    felt = RealOps<float>::positive_part(effective + kBulkDamping * gained);
+template <class Real>
+SLOSH_HD PressureState<Real> pressure_state(Real sum, float rest_sum, float rest_volume, Real density,
+                                            float stiffness, float tension, Real last_volume,
+                                            bool corrected) {
+  const Real compression = sum / rest_sum - 1.0f;
+  const Real effective = effective_compression(compression, Real(tension));
+  Real felt = effective;
+  if (corrected) {
+    const Real gained = effective - (rest_volume / last_volume - 1.0f);
+    const Real damped = RealOps<Real>::positive_part(effective + kBulkDamping * gained);
+    felt = RealOps<Real>::where_less(Real(0.0f), effective, damped, effective);
   }
-  const float pressure = stiffness * density * felt;
-  const float volume = rest_volume / (1.0f + effective);
+  const Real pressure = stiffness * density * felt;
+  const Real volume = rest_volume / (1.0f + effective);
   return {corrected ? volume * volume * pressure : pressure, volume, compression};
 }
 

@@ -74,30 +74,36 @@ SLOSH_HD void add_wall_neighbor(Real dx, Real dy, Real dz, Real share, Real laye
 
 /// Regularises a moment matrix that is near singular with as much of 1 as that takes. Returns the share of it
 /// that is left.
-SLOSH_HD inline float unflattened(Symmetric<float>& moment) {
-  const float flat = determinant(moment) / kFlattest;
-  if (flat >= 1.0f) return 1.0f;
-  const float keep = RealOps<float>::positive_part(flat);
-  moment = scaled_and_shifted(moment, keep, 1.0f - keep);
-  return keep;
+template <class Real>
+SLOSH_HD Real unflattened(Symmetric<Real>& moment) {
+  const Real one(1.0f), flat = determinant(moment) / kFlattest;
+  const Real keep = RealOps<Real>::positive_part(flat);
+  const Symmetric<Real> upright = scaled_and_shifted(moment, keep, one - keep);
+  const auto where_flat = [&](Real yes, Real no) { return RealOps<Real>::where_less(flat, one, yes, no); };
+  moment = {where_flat(upright.xx, moment.xx), where_flat(upright.xy, moment.xy),
+            where_flat(upright.xz, moment.xz), where_flat(upright.yy, moment.yy),
+            where_flat(upright.yz, moment.yz), where_flat(upright.zz, moment.zz)};
+  return where_flat(keep, one);
 }
 
 /// How much of the correction a particle gets at a compression ρ/ρ⁰ − 1: 0–1.
-SLOSH_HD inline float corrected_share(float compression) {
-  const float left = RealOps<float>::positive_part(kImpact - compression) / (kImpact - kQuietCompression);
-  return left < 1.0f ? left : 1.0f;
+template <class Real>
+SLOSH_HD Real corrected_share(Real compression) {
+  const Real left = RealOps<Real>::positive_part(kImpact - compression) / (kImpact - kQuietCompression);
+  return RealOps<Real>::where_less(left, Real(1.0f), left, Real(1.0f));
 }
 
 /// What V² P is multiplied by, from a moment that is 1 on the rest lattice: `share` of its inverse, `virial`
 /// times as strong, and for the rest 1, the gradient of an energy of the densities. Where
 /// neighbours are missing (a free surface, spray) they are taken to lie evenly, and the share goes with them;
 /// none are from `whole_from` of the moment on.
-SLOSH_HD inline Symmetric<float> pressure_directions(const Symmetric<float>& moment, float share,
-                                                     float virial, float whole_from = 1.0f) {
-  const float missing = RealOps<float>::positive_part(1.0f - trace(moment) / (3.0f * whole_from));
-  Symmetric<float> whole = scaled_and_shifted(moment, 1.0f, missing);
+template <class Real>
+SLOSH_HD Symmetric<Real> pressure_directions(const Symmetric<Real>& moment, Real share, Real virial,
+                                             Real whole_from = Real(1.0f)) {
+  const Real missing = RealOps<Real>::positive_part(1.0f - trace(moment) / (3.0f * whole_from));
+  Symmetric<Real> whole = scaled_and_shifted(moment, Real(1.0f), missing);
   unflattened(whole);
-  const float made = share * RealOps<float>::positive_part(1.0f - missing);
+  const Real made = share * RealOps<Real>::positive_part(1.0f - missing);
   return scaled_and_shifted(inverse(whole), made * virial, 1.0f - made);
 }
 

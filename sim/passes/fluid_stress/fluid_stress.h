@@ -32,7 +32,7 @@ inline constexpr float kNoSlipReach = 0.02f;
 
 /// Sums over the fluid neighbours at x_i = x_p − d, without the kernels' constants.
 struct StressSums {
-  FlowAround flow;
+  FlowAround<float> flow;
   float number;          ///< Σ W
   Vector3<float> apart;  ///< Σ W (v_p − v_i), m/s
 };
@@ -53,8 +53,8 @@ SLOSH_HD inline float share_of_stress(float no_slip, float rest_moment) {
 /// lattice. `volume`: m³; `viscosity`: the fluid's own, Pa·s. Where M is near singular (a layer, a thread,
 /// drops) Eq 9 takes over by as much; M_u is taken for M and G and T get a factor K = M_u⁻¹ M, so that they
 /// stay adjoint and T M symmetric.
-SLOSH_HD inline FluidStress fluid_stress(const StressSums& sums, const InverseMoment& moment, float by_walls,
-                                         float rest_moment, float volume, float viscosity) {
+SLOSH_HD inline FluidStress fluid_stress(const StressSums& sums, const InverseMoment<float>& moment,
+                                         float by_walls, float rest_moment, float volume, float viscosity) {
   const float share = by_walls * moment.kept;
   const bool flat = moment.kept < 1.0f;
   FluidStress found{{}, kNearNoSlipWalls * (1.0f - share) * viscosity, {}};

@@ -17,25 +17,28 @@ namespace slosh {
 /// The share of the compression there is that a step undoes. All of it at once is thrown back as speed.
 inline constexpr float kUndoneShare = 0.2f;
 
+template <class Real = float>
 struct SolvedState {
-  float volume;       ///< m³
-  float compression;  ///< ρ/ρ⁰ − 1
-  float expansion;  ///< e: by how much the step is to expand it; below 0, how much it may be pushed together
-                    ///< first
-  Symmetric<float> push;  ///< K, m⁶
-  float u[3];             ///< Pa·m
+  Real volume;       ///< m³
+  Real compression;  ///< ρ/ρ⁰ − 1
+  Real expansion;    ///< e: by how much the step is to expand it; below 0, how much it may be pushed together
+                     ///< first
+  Symmetric<Real> push;  ///< K, m⁶
+  Real u[3];             ///< Pa·m
 };
 
 /// As corrected_state().
-SLOSH_HD inline SolvedState solved_state(const Neighborhood<float>& n, const CorrectionConstants& c,
-                                         float viscosity, float in_u, const float (&v)[3]) {
-  SolvedState state;
+template <class Real>
+SLOSH_HD SolvedState<Real> solved_state(const Neighborhood<Real>& n, const CorrectionConstants& c,
+                                        Real viscosity, Real in_u, const Real (&v)[3]) {
+  SolvedState<Real> state;
   state.compression = n.number / c.rest_number - 1.0f;
-  const float dense = RealOps<float>::positive_part(state.compression);
+  const Real dense = RealOps<Real>::positive_part(state.compression);
   state.volume = c.rest_volume / (1.0f + dense);
-  state.expansion = state.compression > 0.0f ? kUndoneShare * state.compression : state.compression;
+  state.expansion = RealOps<Real>::where_less(Real(0.0f), state.compression, kUndoneShare * state.compression,
+                                              state.compression);
   state.push = scaled_and_shifted(directions_of(n, c, state.volume, state.compression, viscosity),
-                                  state.volume * state.volume, 0.0f);
+                                  state.volume * state.volume, Real(0.0f));
   set_drag(n, c, viscosity, in_u, v, state.u);
   return state;
 }
