@@ -79,16 +79,21 @@ class PairRows {
     }
     /// The same where weights are found group by group: who is in p's row goes where this says, at most
     /// `most` and a batch behind them, and then end_at(). Of each group put_weighed().
-    std::int32_t* begin(std::uint32_t p, std::size_t most) {
-      begin(p);
-      if (most + kLanes > row_->other.size()) row_->other.resize(most + kLanes);
-      return row_->other.data();
+    /// `ahead`: of how many the rows have begun and not ended.
+    std::int32_t* begin(std::uint32_t p, std::size_t most, std::uint32_t ahead = 0) {
+      if (group_.count + ahead == 0) group_.first = p;
+      std::vector<std::int32_t>& other = rows_[group_.count + ahead].other;
+      if (most + kLanes > other.size()) other.resize(most + kLanes);
+      return other.data();
     }
     /// True where that was a group's last.
     bool end_at(const std::int32_t* end) {
-      row_->count = static_cast<std::size_t>(end - row_->other.data());
+      OneRow& row = rows_[group_.count];
+      row.count = static_cast<std::size_t>(end - row.other.data());
       return ++group_.count == kTogether;
     }
+    /// How many rows the group has left.
+    std::uint32_t room() const { return kTogether - group_.count; }
     /// Rows are waiting for put_weighed().
     bool waits() const { return group_.count > 0; }
     /// The first of those whose rows wait.

@@ -28,30 +28,43 @@ void place(const Work& w, ThreadTeam& team) {
   });
 }
 
-// Those of the candidates that p has in reach, itself left out, into p's row.
-bool write_row(const Work& w, std::uint32_t p, const RowList& rows, PairRows::Writer& writer) {
+// Those of the candidates that p, p + 1, … of one cell have in reach, themselves left out, into their rows:
+// what is loaded of a candidate serves all. True where the last of them was a group's.
+template <std::uint32_t together>
+bool write_rows(const Work& w, std::uint32_t p, const RowList& rows, PairRows::Writer& writer) {
   // Columns of one's own: what is written may lie anywhere, for all that the compiler knows.
   const float *const xs = w.fluid.x.data(), *const ys = w.fluid.y.data(), *const zs = w.fluid.z.data();
-  const FloatBatch x(xs[p]), y(ys[p]), z(zs[p]);
   const float h = w.context.support_radius;
   const FloatBatch h_squared(h * h);
   std::uint32_t candidates = 0;
   for (int row = 0; row < rows.count; ++row) candidates += rows.rows[row].end - rows.rows[row].begin;
-  std::int32_t* to = writer.begin(p, candidates);
+  std::int32_t* to[together];
+  FloatBatch x[together], y[together], z[together];
+  for (std::uint32_t a = 0; a < together; ++a) {
+    to[a] = writer.begin(p + a, candidates, a);
+    x[a] = FloatBatch(xs[p + a]);
+    y[a] = FloatBatch(ys[p + a]);
+    z[a] = FloatBatch(zs[p + a]);
+  }
   for (int row = 0; row < rows.count; ++row) {
     const ParticleRange range = rows.rows[row];
     for (std::uint32_t j = range.begin; j < range.end; j += kLanes) {
-      const FloatBatch dx = x - FloatBatch::load_unaligned(xs + j);
-      const FloatBatch dy = y - FloatBatch::load_unaligned(ys + j);
-      const FloatBatch dz = z - FloatBatch::load_unaligned(zs + j);
-      PickedLanes picked = lanes_less(dx * dx + dy * dy + dz * dz, h_squared);
-      if (range.end - j < kLanes) picked &= (PickedLanes{1} << (range.end - j)) - 1;
-      if (p - j < kLanes) picked &= ~(PickedLanes{1} << (p - j));
-      store_picked_indices(j, picked, to);
-      to += count_of(picked);
+      const FloatBatch of_x = FloatBatch::load_unaligned(xs + j), of_y = FloatBatch::load_unaligned(ys + j),
+                       of_z = FloatBatch::load_unaligned(zs + j);
+      const PickedLanes there =
+          range.end - j < kLanes ? (PickedLanes{1} << (range.end - j)) - 1 : ~PickedLanes{0};
+      for (std::uint32_t a = 0; a < together; ++a) {
+        const FloatBatch dx = x[a] - of_x, dy = y[a] - of_y, dz = z[a] - of_z;
+        PickedLanes picked = there & lanes_less(dx * dx + dy * dy + dz * dz, h_squared);
+        if (p + a - j < kLanes) picked &= ~(PickedLanes{1} << (p + a - j));
+        store_picked_indices(j, picked, to[a]);
+        to[a] += count_of(picked);
+      }
     }
   }
-  return writer.end_at(to);
+  bool full = false;
+  for (std::uint32_t a = 0; a < together; ++a) full = writer.end_at(to[a]);
+  return full;
 }
 
 template <bool flows>
@@ -120,8 +133,14 @@ __attribute__((flatten)) float find_chunk(const Work& w, std::size_t begin, std:
   };
   for (std::size_t r = begin; r < end; ++r) {
     const RowList rows = w.fluid.index.rows(grid, runs[r].cell);
-    for (std::uint32_t p = runs[r].particles.begin; p < runs[r].particles.end; ++p) {
-      if (write_row(w, p, rows, writer)) put();
+    for (std::uint32_t p = runs[r].particles.begin, end_of_run = runs[r].particles.end; p < end_of_run;) {
+      const std::uint32_t together = std::min(end_of_run - p, writer.room());
+      const auto write = together == 4   ? write_rows<4>
+                         : together == 3 ? write_rows<3>
+                         : together == 2 ? write_rows<2>
+                                         : write_rows<1>;
+      if (write(w, p, rows, writer)) put();
+      p += together;
     }
   }
   if (writer.waits()) put();
