@@ -71,12 +71,14 @@ void compute_forces_by_rows(PassContext& context, ThreadTeam& team, FluidParticl
                             const BoundaryParticles& fixed, const BoundaryParticles& moving, double dt,
                             FluidViscosity& drag, const FluidPress& press);
 
-/// What each body particle feels, in the order of the cells; of runs without fluid in reach nothing.
+/// What each chunk of body particles' runs adds, body by body.
 struct SurfaceSums {
-  std::vector<char> met;                    // a run of boundary particles: fluid is in reach
-  std::vector<glm::vec3> force;             // N
-  std::vector<glm::vec3> couple;            // N·m, of what bears elsewhere (SurfaceSum)
-  std::vector<Symmetric<float>> drag_rate;  // N·s/m
+  struct Part {
+    int body;
+    Wrench wrench;
+    BodyDrag drag;
+  };
+  std::vector<std::vector<Part>> of_chunk;
 };
 
 /// Eq 5, 6, 9 on body particles by fluid ones, summed by Eq 10–12 over those bodies of `boundary` that are

@@ -15,6 +15,7 @@ struct SurfaceWalk {
   const PassContext& context;
   const FluidParticles& fluid;
   const BoundaryParticles& boundary;
+  std::span<const glm::dvec3> centers;
   const std::vector<char>& wanted;
   SurfaceSums& sums;
   bool drags;
@@ -31,6 +32,14 @@ __attribute__((flatten)) void find_sums(const SurfaceWalk& walk, std::size_t beg
   const DragShape<FloatBatch> shape = in_all_lanes(context.drag_shape);
   const FloatBatch beyond(1.0f - context.correction.wall_layer);
   const float scale = context.force_scale;
+  std::vector<SurfaceSums::Part>& found = walk.sums.of_chunk[begin / kForceRunsPerChunk];
+  found.clear();
+  const auto part_of = [&](int body) -> SurfaceSums::Part& {
+    std::size_t at = 0;
+    while (at < found.size() && found[at].body != body) ++at;
+    if (at == found.size()) found.push_back({body, {}, {}});
+    return found[at];
+  };
   for (std::size_t r = begin; r < end; ++r) {
     RowList rows = walk.fluid.index.rows(context.grid, runs[r].cell);
     const ParticleRange range = runs[r].particles;
@@ -39,7 +48,6 @@ __attribute__((flatten)) void find_sums(const SurfaceWalk& walk, std::size_t beg
       if (walk.wanted[boundary.body[i]]) h_most = std::max(h_most, boundary.reach[i]);
     }
     if (rows.count > 0) rows = CellBox(own, range).in_reach(fluid_columns, rows, h_most);
-    walk.sums.met[r] = rows.count > 0;
     if (rows.count == 0) continue;
     for (std::uint32_t i = range.begin; i < range.end; ++i) {
       if (!walk.wanted[boundary.body[i]]) continue;
@@ -53,14 +61,12 @@ __attribute__((flatten)) void find_sums(const SurfaceWalk& walk, std::size_t beg
         add_row_forces<Parts, Parts::kOnBodies, viscosity>(self, fluid_columns, rows, h, shape, sum,
                                                            FloatBatch(wall.of_fluid), also);
       };
-      if (viscosity != Viscosity::kNone && walk.drags) {
+      const bool drags = viscosity != Viscosity::kNone && walk.drags;
+      if (drags) {
         add_forces([&](const ParticleView<FloatBatch>& p, FloatBatch reach, FloatBatch weight) {
           add_pair_viscosity_rate<typename Parts::ForceKernel, Parts::kDrag>(self, p, reach, shape, weight,
                                                                              rate);
         });
-        walk.sums.drag_rate[i] = {scale * lane_sum(rate.xx), scale * lane_sum(rate.xy),
-                                  scale * lane_sum(rate.xz), scale * lane_sum(rate.yy),
-                                  scale * lane_sum(rate.yz), scale * lane_sum(rate.zz)};
       } else {
         add_forces(NothingBesides{});
       }
@@ -69,8 +75,17 @@ __attribute__((flatten)) void find_sums(const SurfaceWalk& walk, std::size_t beg
           add_forces_on_mirror<Parts, viscosity>(boundary, i, context.kinds.front().viscosity, fluid_columns,
                                                  rows, h, shape, sum);
       }
-      walk.sums.force[i] = scale * glm::vec3(lane_sum(sum.x), lane_sum(sum.y), lane_sum(sum.z));
-      walk.sums.couple[i] = scale * glm::vec3(lane_sum(sum.cx), lane_sum(sum.cy), lane_sum(sum.cz));
+      SurfaceSums::Part& part = part_of(boundary.body[i]);
+      const glm::dvec3 force(scale * glm::vec3(lane_sum(sum.x), lane_sum(sum.y), lane_sum(sum.z)));
+      const glm::dvec3 couple(scale * glm::vec3(lane_sum(sum.cx), lane_sum(sum.cy), lane_sum(sum.cz)));
+      const glm::dvec3 arm =
+          glm::dvec3(boundary.x[i], boundary.y[i], boundary.z[i]) - walk.centers[boundary.body[i]];
+      part.wrench = part.wrench + Wrench{force, glm::cross(arm, force) + couple};
+      if (!drags) continue;
+      const auto of = [&](const FloatBatch& of_rate) {
+        return static_cast<double>(scale * lane_sum(of_rate));
+      };
+      part.drag.add({of(rate.xx), of(rate.xy), of(rate.xz), of(rate.yy), of(rate.yz), of(rate.zz)}, arm);
     }
   }
 }
@@ -82,30 +97,18 @@ void sum_body_wrenches(PassContext& context, ThreadTeam& team, const FluidPartic
                        const std::vector<char>& wanted, SurfaceSums& scratch, std::span<Wrench> wrenches,
                        std::span<BodyDrag> drags) {
   const std::vector<CellRun>& runs = boundary.index.runs();
-  const std::size_t count = boundary.index.particles();
-  if (count == 0) return;
-  scratch.met.resize(runs.size());
-  scratch.force.resize(count);
-  scratch.couple.resize(count);
-  if (!drags.empty()) scratch.drag_rate.resize(count);
-  const SurfaceWalk walk{context, fluid, boundary, wanted, scratch, !drags.empty()};
+  if (runs.empty()) return;
+  scratch.of_chunk.resize(chunk_count(runs.size(), kForceRunsPerChunk));
+  const SurfaceWalk walk{context, fluid, boundary, centers, wanted, scratch, !drags.empty()};
   with_physics(context.plan, [&]<class Parts, Viscosity viscosity>() {
     team.run(runs.size(), kForceRunsPerChunk,
              [&](std::size_t begin, std::size_t end) { find_sums<Parts, viscosity>(walk, begin, end); });
   });
   // One fixed order (that of the cells), so that the sum does not depend on the threads.
-  for (std::size_t r = 0; r < runs.size(); ++r) {
-    if (!scratch.met[r]) continue;
-    for (std::uint32_t i = runs[r].particles.begin; i < runs[r].particles.end; ++i) {
-      const int body = boundary.body[i];
-      if (!wanted[body]) continue;
-      const glm::dvec3 force(scratch.force[i]);
-      const glm::dvec3 arm = glm::dvec3(boundary.x[i], boundary.y[i], boundary.z[i]) - centers[body];
-      wrenches[body].force += force;
-      wrenches[body].torque += glm::cross(arm, force) + glm::dvec3(scratch.couple[i]);
-      if (drags.empty()) continue;
-      const Symmetric<float>& rate = scratch.drag_rate[i];
-      drags[body].add({rate.xx, rate.xy, rate.xz, rate.yy, rate.yz, rate.zz}, arm);
+  for (const std::vector<SurfaceSums::Part>& parts : scratch.of_chunk) {
+    for (const auto& [body, wrench, drag] : parts) {
+      wrenches[body] = wrenches[body] + wrench;
+      for (int k = 0; k < BodyDrag::kSize && !drags.empty(); ++k) drags[body].upper[k] += drag.upper[k];
     }
   }
 }
