@@ -119,20 +119,21 @@ __device__ inline void for_near(const CellGrid& grid, const CellTable& cells, co
 }
 
 /// Calls f(j) for what the density pass found, or the thread's share of it, in the same order. Calls it for
-/// others, too, who are out of reach: their kernel is 0.
-template <class Team, class F>
+/// others, too, who are out of reach: their kernel is 0. `at_once`: f's loads wait together; a divisor of
+/// kListed.
+template <class Team, std::uint32_t at_once = kListed, class F>
 __device__ inline void for_listed(const CellGrid& grid, const SortedFluid& fluid, std::uint32_t cell,
                                   std::uint32_t found, F&& f) {
   if (found > fluid.near.room) return for_neighbors<Team>(grid, fluid.cells, cell, f);
   const std::uint32_t* entry = fluid.near.of(thread_index());
-  std::uint32_t j[kListed], next[kListed];
-  for (std::uint32_t i = 0; i < kListed; ++i) next[i] = entry[32 * i];
+  std::uint32_t j[at_once], next[at_once];
+  for (std::uint32_t i = 0; i < at_once; ++i) next[i] = entry[32 * i];
 #pragma unroll 1
-  for (std::uint32_t k = 0; k < found; k += kListed) {
-    entry += 32 * kListed;
-    for (std::uint32_t i = 0; i < kListed; ++i) j[i] = next[i];
-    for (std::uint32_t i = 0; i < kListed; ++i) next[i] = entry[32 * i];  // they come while f() is at work
-    for (std::uint32_t i = 0; i < kListed; ++i) f(j[i]);
+  for (std::uint32_t k = 0; k < found; k += at_once) {
+    entry += 32 * at_once;
+    for (std::uint32_t i = 0; i < at_once; ++i) j[i] = next[i];
+    for (std::uint32_t i = 0; i < at_once; ++i) next[i] = entry[32 * i];  // they come while f() is at work
+    for (std::uint32_t i = 0; i < at_once; ++i) f(j[i]);
   }
 }
 
@@ -148,7 +149,7 @@ struct CellWalk {
     for_neighbors<Team>(grid, cells, cell, f);
   }
 };
-template <class Team>
+template <class Team, std::uint32_t at_once = kListed>
 struct ListWalk {
   static constexpr bool kListed = true;
   const CellGrid& grid;
@@ -156,7 +157,7 @@ struct ListWalk {
   std::uint32_t cell;
   template <class F>
   __device__ void operator()(F&& f) const {
-    for_listed<Team>(grid, fluid, cell, fluid.near.counts[thread_index()], f);
+    for_listed<Team, at_once>(grid, fluid, cell, fluid.near.counts[thread_index()], f);
   }
 };
 

@@ -9,7 +9,7 @@ namespace {
 // by what viscosity is left.
 template <class Team, class Parts>
 __device__ void add_passed_forces(const StepConstants& c, ParticleView<float> p, std::uint32_t self,
-                                  const NeighborColumns& n, const ListWalk<Team>& walk,
+                                  const NeighborColumns& n, const ListWalk<Team, 2>& walk,
                                   ForceSum<float>& sum) {
   using Kernel = typename Parts::ForceKernel;
   const float h = c.support_radius;
@@ -69,7 +69,7 @@ __global__ __launch_bounds__(kThreads, stresses ? kBlocksOfTensors
   if constexpr (Parts::kCorrected) read_corrected(columns(fluid), p, self);
   ForceSum<float> sum{0.0f, 0.0f, 0.0f};
   if constexpr (stresses) {
-    add_passed_forces<Team, Parts>(c, self, p, columns(fluid), ListWalk<Team>{c.grid, fluid, cell}, sum);
+    add_passed_forces<Team, Parts>(c, self, p, columns(fluid), ListWalk<Team, 2>{c.grid, fluid, cell}, sum);
   } else {
     using Walk = std::conditional_t<Parts::kCorrected, ListWalk<Team>, CellWalk<Team>>;
     const Walk walk = [&]() -> Walk {
