@@ -38,6 +38,11 @@ glm::dvec2 extent(const ChartPanel& panel, int axis) {
   return found;
 }
 
+/// Of values that are all at or above nothing.
+bool starts_near_zero(const glm::dvec2& extent) {
+  return extent.x >= 0.0 && extent.x < 0.1 * extent.y;
+}
+
 /// A logarithmic axis ends a little beyond what it shows, not at the next power of ten, where two of these
 /// are left to be written at it. Empty: gnuplot may choose.
 std::string log_range(const char* axis, const glm::dvec2& extent) {
@@ -55,7 +60,7 @@ std::string range_script(const ChartPanel& panel) {
   if (!marks && x.x < x.y) return format("set xrange [%.8g:%.8g]\n", x.x, x.y);
   const std::string by_tens = panel.log_x ? log_range("x", x) : "";
   if (!by_tens.empty()) return by_tens;
-  return !panel.log_x && x.x == 0.0 && x.x < x.y ? "set xrange [0:*]\n" : "set xrange [*:*]\n";
+  return !panel.log_x && starts_near_zero(x) ? "set xrange [0:*]\n" : "set xrange [*:*]\n";
 }
 
 /// Stretches of the axis, every second one shaded, their names above the curves.
@@ -84,7 +89,7 @@ std::string spans_script(const ChartPanel& panel) {
 /// Whether the vertical axis begins at nothing: where the values are all at or above it and begin there.
 bool begins_at_zero(const ChartPanel& panel) {
   const glm::dvec2 y = extent(panel, 1);
-  return !panel.log_y && y.x >= 0.0 && (panel.y_from_zero || y.x < 0.1 * y.y);
+  return !panel.log_y && ((panel.y_from_zero && y.x >= 0.0) || starts_near_zero(y));
 }
 
 std::string height_script(const ChartPanel& panel) {
@@ -155,7 +160,8 @@ std::string panel_script(const ChartPanel& panel, std::size_t number) {
                                 (has_legend_below(panel) ? "below center" : "right top vertical") +
                                 " reverse Left samplen 2 font \"DejaVu Sans,9\"\n";
   // A title of nothing keeps a legend below off the axis' label.
-  script += has_legend_below(panel) ? "set key title \" \" font \"DejaVu Sans,5\"\n" : "set key notitle\n";
+  if (panel.legend)
+    script += has_legend_below(panel) ? "set key title \" \" font \"DejaVu Sans,5\"\n" : "set key notitle\n";
   if (panel.log_x) script += "set logscale x\n";
   if (panel.log_y) script += "set logscale y\n";
   script += height_script(panel);

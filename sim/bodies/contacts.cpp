@@ -95,6 +95,7 @@ ContactFinder::ContactFinder(const Scene& scene, const SampledScene& sampled) : 
       shape.points = {glm::vec3(0.0f)};
       shape.normals = {glm::vec3(0.0f)};
       shape.flat = {0};
+      shape.clusters = {{glm::vec3(0.0f), 0.0f, {0}}};
       continue;
     }
     shape.points = sampled.surfaces[i].positions;
