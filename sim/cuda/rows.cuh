@@ -7,9 +7,9 @@
 namespace slosh::cuda {
 
 inline constexpr int kThreads = 128;
-/// How many blocks a multiprocessor holds at least of kernels with particle stresses: 64 registers a thread.
-/// By itself the compiler takes 71 to 80, and a step of a million particles a fifth longer
-/// (tests/bench/results/2026-11-27-passed-steps-h100.csv).
+/// How many blocks a multiprocessor holds at least of the density pass and of forces with particle stresses:
+/// 64 registers a thread. By itself the compiler takes 66 to 80, and a step of a million particles a fifth
+/// longer (tests/bench/results/2026-11-27-passed-steps-h100.csv).
 inline constexpr int kBlocksOfTensors = 8;
 
 inline unsigned blocks_for(std::uint32_t count, int threads = kThreads) {
