@@ -106,8 +106,7 @@ double spacing_of(const SweepVerbOptions& options, const Scene& scene) {
 
 /// Why one of them cannot be run: its step would be endless, or its walls are too thin. No field of --set
 /// moves a mesh, so each spacing is sampled once.
-std::optional<Error> refused(const SweepVerbOptions& options, const std::vector<Member>& family,
-                             Backend backend) {
+std::optional<Error> refused(const SweepVerbOptions& options, const std::vector<Member>& family) {
   std::vector<double> sampled;
   for (const Member& member : family) {
     const double spacing = spacing_of(options, member.scene);
@@ -227,8 +226,7 @@ int sweep(const SweepVerbOptions& options) {
   setting.backend = backends_of(machine).front();
   setting.threads = options.threads;
   setting.stopped = [] { return interrupted_by() != 0; };
-  if (const std::optional<Error> wrong = refused(options, family.value(), setting.backend))
-    return fail(*wrong);
+  if (const std::optional<Error> wrong = refused(options, family.value())) return fail(*wrong);
   const Result<std::filesystem::path> folder = report_folder(machine, "sweep", kSweepTable);
   if (!folder) return fail(folder.error());
   const std::filesystem::path table = folder.value() / kSweepTable;
