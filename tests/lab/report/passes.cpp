@@ -15,10 +15,6 @@ namespace {
 
 constexpr int kWarmUp = 10;
 
-double median(const std::vector<double>& values) {
-  return percentile(values, 0.5);
-}
-
 struct Variant {
   PassRow row;
   World world;
@@ -63,6 +59,7 @@ double farthest(const Snapshot& a, const Snapshot& b) {
 }  // namespace
 
 double percentile(std::vector<double> values, double share) {
+  if (values.empty()) return 0.0;
   const double place = share * static_cast<double>(values.size());
   const auto nth =
       values.begin() + static_cast<std::ptrdiff_t>(std::min(place, static_cast<double>(values.size() - 1)));
@@ -80,9 +77,9 @@ StepCost measure_steps(World& world, std::span<const HandleInput> hands, const P
     steps.push_back(1e3 * world.times().total);
     for (std::size_t p = 0; p < kPassCount; ++p) parts[p].push_back(1e3 * world.times().pass[p]);
   }
-  StepCost cost{median(steps), percentile(steps, 0.1), percentile(steps, 0.9), {}};
+  StepCost cost{percentile(steps, 0.5), percentile(steps, 0.1), percentile(steps, 0.9), {}};
   for (std::size_t p = 0; p < kPassCount; ++p) {
-    const double ms = median(parts[p]);
+    const double ms = percentile(parts[p], 0.5);
     if (ms > 0.0) cost.shares.push_back({static_cast<PassId>(p), ms, ms / cost.ms});
   }
   return cost;
@@ -143,8 +140,8 @@ PassTable measure_passes(const Scene& scene, const SampledScene& sampled, const 
     std::vector<double> ratios;
     for (std::size_t i = 0; i < each.times.size(); ++i)
       ratios.push_back(each.times[i] / variants.front().times[i]);
-    each.row.step_ms = median(each.times);
-    each.row.slower = median(ratios);
+    each.row.step_ms = percentile(each.times, 0.5);
+    each.row.slower = percentile(ratios, 0.5);
     table.rows.push_back(each.row);
   }
   table.alone = measure_steps(variants.front().world, hands, options);

@@ -47,7 +47,7 @@ struct PassOptions {
   bool (*stopped)() = nullptr;
 };
 
-/// The value that a share (0–1) of the values is below; 0.5 is the median. There must be one at least.
+/// The value that a share (0–1) of the values is below; 0.5: the median. 0 where there is none.
 double percentile(std::vector<double> values, double share);
 
 /// Warms up, then times options.steps steps of a world, one after the other: on a GPU what another world's

@@ -6,14 +6,9 @@
 #include <ctime>
 
 #include "scenes/load.h"
+#include "tests/lab/report/passes.h"
 
 namespace slosh {
-
-double median(std::vector<double> values) {
-  if (values.empty()) return 0.0;
-  std::ranges::nth_element(values, values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2));
-  return values[values.size() / 2];
-}
 
 RenderOptions report_options(Surface surface, int width, int height) {
   RenderOptions options;
@@ -63,7 +58,7 @@ std::pair<double, double> Stand::times(int frames) {
     whole.push_back(sum);
   }
   renderer_->set_timing(false);
-  return {median(filter), median(whole)};
+  return {report::percentile(filter, 0.5), report::percentile(whole, 0.5)};
 }
 
 Result<BucketTimes> bucket_times(Context& context, report::Setting setting, int pictures) {
@@ -96,7 +91,7 @@ Result<BucketTimes> bucket_times(Context& context, report::Setting setting, int 
     }
   }
   const auto time_of = [&](std::size_t way) {
-    return PictureTime{median(processor[way]), std::ranges::min(wall[way])};
+    return PictureTime{report::percentile(processor[way], 0.5), std::ranges::min(wall[way])};
   };
   return BucketTimes{time_of(0), time_of(1)};
 }

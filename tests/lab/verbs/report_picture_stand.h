@@ -18,8 +18,6 @@ inline constexpr int kReportWidth = 640;
 inline constexpr int kReportHeight = 480;
 inline constexpr double kBucketSpacing = 0.012;  ///< m, the scene's coarsest
 
-double median(std::vector<double> values);
-
 /// As play has it, or all of section 5; nothing is kept from picture to picture.
 RenderOptions report_options(Surface surface, int width, int height);
 

@@ -87,7 +87,7 @@ double time_pictures(Context& context, const SpeedPool& pool, World& world, int 
     stand.value()->draw(snapshot);
     if (i >= kFirstPictures) times.push_back(1e3 * watch.lap());
   }
-  return median(times);
+  return report::percentile(times, 0.5);
 }
 
 std::string device_of(const ReportOptions& options, Backend backend) {
