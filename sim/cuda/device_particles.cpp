@@ -20,15 +20,19 @@ StepConstants step_constants(const RunConstants& c) {
           c.correction};
 }
 
-void SortSpace::allocate(std::uint32_t largest_count, std::uint32_t retired, CallCheck& check) {
-  retired_ = retired;
-  counts_.allocate(retired + 1, check);
+void CellStarts::allocate(const CellGrid& grid, CallCheck& check) {
+  starts_.allocate(grid.cell_count() + 1, check);
+  filled_.allocate(CellTiles(grid).count, check);
+}
+
+void SortSpace::allocate(std::uint32_t largest_count, const CellGrid& grid, CallCheck& check) {
+  retired_ = grid.retired_key();
+  tiles_ = CellTiles(grid);
+  counts_.allocate(retired_ + 1, check);
+  in_tile_.allocate(tiles_.count, check);
+  tile_start_.allocate(tiles_.count + 1, check);
   tickets_.allocate(largest_count, check);
   came_.allocate(largest_count, check);
-  std::size_t bytes = 0;
-  if (check.failed()) return;
-  check.ok(exclusive_sum(nullptr, bytes, nullptr, nullptr, retired + 1, nullptr), "sizing the sort");
-  temp_.allocate(bytes, check);
 }
 
 void SortSpace::count_keys(const std::uint32_t* keys, std::uint32_t count, bool some_out, CellTable cells,
@@ -39,9 +43,7 @@ void SortSpace::count_keys(const std::uint32_t* keys, std::uint32_t count, bool 
 void SortSpace::find_cells(const std::uint32_t* keys, std::uint32_t count, CellTable cells, CallCheck& check,
                            cudaStream_t stream) {
   if (check.failed()) return;
-  std::size_t bytes = temp_.bytes();
-  check.ok(exclusive_sum(temp_.data(), bytes, counts_.data(), cells.start, retired_ + 1, stream), "sort");
-  launch_note_sources(keys, count, cells.start, view(), stream);
+  launch_find_cells(keys, count, retired_, tiles_, view(), cells, stream);
   check.launched("sort");
 }
 
@@ -63,7 +65,7 @@ void put_far(float4* places, CallCheck& check) {
 
 }  // namespace
 
-void FluidBuffers::allocate(std::size_t count, const RunConstants& constants, std::uint32_t retired,
+void FluidBuffers::allocate(std::size_t count, const RunConstants& constants, const CellGrid& grid,
                             CallCheck& check) {
   const std::size_t with_nobodies = count + kNobodies;
   for (MovingPacks<DeviceBuffer>& packs : packs_)
@@ -77,7 +79,7 @@ void FluidBuffers::allocate(std::size_t count, const RunConstants& constants, st
   for (float4* places : {packs_[0].x.data(), packs_[1].x.data(), pressed_.data()})
     put_far(places + count, check);
   force_.allocate(count, check);
-  starts_.allocate(retired + 1, check);
+  starts_.allocate(grid, check);
   if (needs(constants.plan, ColumnNeed::kCorrected)) {
     push_a_.allocate(with_nobodies, check);
     push_b_.allocate(with_nobodies, check);
@@ -108,7 +110,7 @@ void FluidBuffers::allocate(std::size_t count, const RunConstants& constants, st
   view_.passed_z = passed_z_.data();
   view_.left = left_.data();
   view_.force = force_.data();
-  view_.cells.start = starts_.data();
+  view_.cells = starts_.view();
   allow_viscosities(constants, check);
 }
 
@@ -141,7 +143,7 @@ void FluidBuffers::sort(const StepConstants& constants, SortSpace& space, Keys k
   check.launched("gathering fluid");
 }
 
-void SurfaceBuffers::allocate(const std::vector<SurfaceParticle>& particles, std::uint32_t retired,
+void SurfaceBuffers::allocate(const std::vector<SurfaceParticle>& particles, const CellGrid& grid,
                               CallCheck& check) {
   const std::uint32_t count = static_cast<std::uint32_t>(particles.size());
   if (count == 0) return;
@@ -168,7 +170,7 @@ void SurfaceBuffers::allocate(const std::vector<SurfaceParticle>& particles, std
   viscosity_.allocate(count, check);
   sorted_reach_.allocate(count, check);
   sorted_body_.allocate(count, check);
-  starts_.allocate(retired + 1, check);
+  starts_.allocate(grid, check);
   local_view_ = {count,         position_.data(), material_.data(), reach_.data(),
                  body_.data(),  placed_.data(),   velocity_.data(), key_.data(),
                  force_.data(), couple_.data(),   drag_a_.data(),   drag_b_.data()};
@@ -180,7 +182,7 @@ void SurfaceBuffers::allocate(const std::vector<SurfaceParticle>& particles, std
                   sorted_body_.data(),
                   sorted_key_.data(),
                   order_.data(),
-                  {starts_.data()},
+                  starts_.view(),
                   upload_mirrors(particles, check)};
 }
 
@@ -205,9 +207,8 @@ MirrorPlanes SurfaceBuffers::upload_mirrors(const std::vector<SurfaceParticle>& 
 void SurfaceBuffers::place(const StepConstants& constants, const DeviceBody* bodies, SortSpace& space,
                            CallCheck& check, cudaStream_t stream) {
   if (count() == 0 || check.failed()) return;
-  launch_place_surface(constants, local_view_, bodies, stream);
+  launch_place_surface(constants, local_view_, bodies, space.view(), stream);
   check.launched("placing body particles");
-  space.count_keys(key_.data(), count(), false, sorted_view_.cells, stream);
   space.find_cells(key_.data(), count(), sorted_view_.cells, check, stream);
   if (check.failed()) return;
   launch_gather_surface(constants, local_view_, space.view(), sorted_view_, stream);

@@ -12,21 +12,34 @@ inline constexpr std::uint32_t kSlices = 4;
 /// What of them the kernels need.
 StepConstants step_constants(const RunConstants& constants);
 
+/// A set's table of cells.
+class CellStarts {
+ public:
+  void allocate(const CellGrid& grid, CallCheck& check);
+  CellTable view() const { return {starts_.data(), filled_.data()}; }
+
+ private:
+  DeviceBuffer<std::uint32_t> starts_;
+  DeviceBuffer<std::uint8_t> filled_;
+};
+
 /// What a counting sort by cell needs; shared by the sets, one after the other in a stream.
 class SortSpace {
  public:
-  void allocate(std::uint32_t largest_count, std::uint32_t retired, CallCheck& check);
+  void allocate(std::uint32_t largest_count, const CellGrid& grid, CallCheck& check);
   /// Counts the keys. `some_out`: `cells` is of the sort before, whose last particles are out.
   void count_keys(const std::uint32_t* keys, std::uint32_t count, bool some_out, CellTable cells,
                   cudaStream_t stream) const;
   /// Where each cell will begin, by the counts to `cells`; what is left is to bring each to its place.
   void find_cells(const std::uint32_t* keys, std::uint32_t count, CellTable cells, CallCheck& check,
                   cudaStream_t stream);
-  SortView view() const { return {counts_.data(), tickets_.data(), came_.data()}; }
+  SortView view() const {
+    return {counts_.data(), in_tile_.data(), tile_start_.data(), tickets_.data(), came_.data(), tiles_.cells};
+  }
 
  private:
-  DeviceBuffer<std::uint32_t> counts_, tickets_, came_;
-  DeviceBuffer<unsigned char> temp_;
+  DeviceBuffer<std::uint32_t> counts_, in_tile_, tile_start_, tickets_, came_;
+  CellTiles tiles_{CellGrid()};
   std::uint32_t retired_ = 0;
 };
 
@@ -36,8 +49,8 @@ enum class Keys { kCounted, kNotCounted };
 /// Fluid particles, and a second set of packs that a sort gathers to.
 class FluidBuffers {
  public:
-  /// `retired`: the key of who is out, in StepConstants::grid.
-  void allocate(std::size_t count, const RunConstants& constants, std::uint32_t retired, CallCheck& check);
+  /// `grid`: StepConstants::grid.
+  void allocate(std::size_t count, const RunConstants& constants, const CellGrid& grid, CallCheck& check);
   /// Brings the particles into the order of their cells.
   void sort(const StepConstants& constants, SortSpace& space, Keys keys, CallCheck& check,
             cudaStream_t stream);
@@ -61,7 +74,7 @@ class FluidBuffers {
   DeviceBuffer<float> drag_z_, expansion_;
   DeviceBuffer<float4> passed_x_, passed_y_, passed_z_;  // kFluidStress
   DeviceBuffer<float> left_;                             // kFluidStress
-  DeviceBuffer<std::uint32_t> starts_;                   // of cells
+  CellStarts starts_;
   DeviceBuffer<std::uint32_t> near_, near_counts_;
   bool some_out_ = false;  // since write(), these are sorted
   SortedFluid view_;
@@ -70,7 +83,7 @@ class FluidBuffers {
 /// The surface particles of all fixed or of all free bodies.
 class SurfaceBuffers {
  public:
-  void allocate(const std::vector<SurfaceParticle>& particles, std::uint32_t retired, CallCheck& check);
+  void allocate(const std::vector<SurfaceParticle>& particles, const CellGrid& grid, CallCheck& check);
   void place(const StepConstants& constants, const DeviceBody* bodies, SortSpace& space, CallCheck& check,
              cudaStream_t stream);
 
@@ -89,7 +102,8 @@ class SurfaceBuffers {
   DeviceBuffer<float2> mirror_bend_b_;
   DeviceBuffer<float> viscosity_, reach_, sorted_reach_;
   DeviceBuffer<std::uint16_t> body_, sorted_body_;
-  DeviceBuffer<std::uint32_t> key_, sorted_key_, order_, starts_;
+  DeviceBuffer<std::uint32_t> key_, sorted_key_, order_;
+  CellStarts starts_;
   LocalSurface local_view_;
   SortedSurface sorted_view_;
 };

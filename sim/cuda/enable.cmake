@@ -23,7 +23,7 @@ macro(slosh_look_for_cuda)
     find_package(CUDAToolkit QUIET)
     # A compiler may be there without its headers, or too old for C++20.
     file(WRITE ${CMAKE_BINARY_DIR}/cuda_works.cu
-      "#include <cub/version.cuh>\n#include <cuda_runtime.h>\n#include <concepts>\n"
+      "#include <cuda_runtime.h>\n#include <concepts>\n"
       "template <std::floating_point T> __global__ void twice(T* x) { *x *= T(2); }\n"
       "int main() { twice<float><<<1, 1>>>(nullptr); return 0; }\n")
     # The source's own standard: 3.25 refuses CUDA_STANDARD 20 before the two lines above can tell it.
@@ -38,7 +38,7 @@ macro(slosh_look_for_cuda)
       endif()
     endif()
     if(NOT SLOSH_CUDA_WORKS)
-      set(slosh_why "the CUDA compiler cannot build C++20 with CUB")
+      set(slosh_why "the CUDA compiler cannot build C++20")
     elseif(NOT TARGET CUDA::cudart_static)
       set(slosh_why "the CUDA runtime library is missing")
     endif()

@@ -7,6 +7,7 @@
 
 #include <cuda_runtime.h>
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 
@@ -32,10 +33,24 @@ struct StepConstants {
   CorrectionConstants correction;
 };
 
-/// Where each cell's particles begin in sorted order; the next cell's begin where they end. One more than
-/// cells: the last says where those begin that are out of the domain.
+/// A grid's cells in tiles of some thousand, each of whole lines along x: fluid fills a small part of most
+/// domains, and a sort looks at those tiles alone that have particles.
+struct CellTiles {
+  explicit CellTiles(const CellGrid& grid)
+      : cells(grid.line_cells() * std::max(1u, kAbout / grid.line_cells())),
+        count((grid.cell_count() + cells - 1) / cells) {}
+  static constexpr std::uint32_t kAbout = 4096;
+
+  std::uint32_t cells;  ///< of a tile; the last one may have fewer
+  std::uint32_t count;  ///< of tiles
+};
+
+/// Where each cell's particles begin in sorted order; the next cell's of its line begin where they end. One
+/// more than cells: the last says where those begin that are out of the domain. All of a tile without
+/// particles have one value, whichever.
 struct CellTable {
   std::uint32_t* start = nullptr;
+  std::uint8_t* filled = nullptr;  ///< 1: a tile whose values differ
 };
 
 /// A counting sort under way. Its order is that of cells and, within a cell, of before: tickets are given to
@@ -43,9 +58,12 @@ struct CellTable {
 struct SortView {
   static constexpr std::uint32_t kStays = 0xffffffffu;  ///< the ticket of who was out already
 
-  std::uint32_t* counts = nullptr;   ///< of each key; 0 before and after a sort
-  std::uint32_t* tickets = nullptr;  ///< of each particle, within its key
-  std::uint32_t* came = nullptr;     ///< where from, in the order of keys and tickets
+  std::uint32_t* counts = nullptr;      ///< of each key; 0 before and after a sort
+  std::uint32_t* in_tile = nullptr;     ///< of each tile; 0 before and after
+  std::uint32_t* tile_start = nullptr;  ///< where each tile begins, and behind them the last one's end
+  std::uint32_t* tickets = nullptr;     ///< of each particle, within its key
+  std::uint32_t* came = nullptr;        ///< where from, in the order of keys and tickets
+  std::uint32_t tile_cells = 1;
 };
 
 /// The packs of sim/columns.h that outlive a step: `Store` is a buffer, a pointer or a vector.
@@ -191,12 +209,23 @@ struct WrenchChunk {
   std::uint32_t begin = 0, end = 0;
   std::uint32_t body = 0;
   std::uint32_t moving = 0;  ///< 1: of the free bodies' particles, 0: of the fixed ones'
+  std::uint32_t range = 0;   ///< the chunks of its body
 };
 
 /// The chunks of one body.
 struct WrenchRange {
   std::uint32_t begin = 0, end = 0;
-  std::uint32_t body = 0;
+};
+
+/// How the sums over the bodies' particles are cut, and room for their parts.
+struct SumPlan {
+  static constexpr int kWrench = 6, kAll = kWrench + BodyDrag::kSize;  ///< numbers of a part
+
+  const WrenchChunk* chunks = nullptr;
+  std::uint32_t chunk_count = 0;  ///< > 0
+  const WrenchRange* ranges = nullptr;
+  double* partial = nullptr;      ///< kAll a chunk: a wrench and a drag
+  std::uint32_t* done = nullptr;  ///< chunks, of each range; 0 before and after
 };
 
 struct DeviceWrench {
@@ -206,22 +235,20 @@ struct DeviceWrench {
   Wrench wrench() const { return {{force[0], force[1], force[2]}, {torque[0], torque[1], torque[2]}}; }
 };
 
-/// scan.cu: starts[i] = counts[0] + … + counts[i − 1]. Call with temp = nullptr to learn temp_bytes.
-cudaError_t exclusive_sum(void* temp, std::size_t& temp_bytes, const std::uint32_t* counts,
-                          std::uint32_t* starts, std::uint32_t count, cudaStream_t stream);
-
 /// order.cu. Counts keys and gives tickets; who was out already, at `*out_before` and behind, stays.
 /// `out_before`: null where nobody was.
 void launch_count_keys(const std::uint32_t* keys, std::uint32_t count, std::uint32_t retired,
                        const std::uint32_t* out_before, const SortView& sort, cudaStream_t stream);
-/// Notes who came from where. `start`: of the counts.
-void launch_note_sources(const std::uint32_t* keys, std::uint32_t count, const std::uint32_t* start,
-                         const SortView& sort, cudaStream_t stream);
+/// Where each cell begins, by the counts, to `cells`; then notes who of `count` came from where.
+void launch_find_cells(const std::uint32_t* keys, std::uint32_t count, std::uint32_t retired,
+                       const CellTiles& tiles, const SortView& sort, const CellTable& cells,
+                       cudaStream_t stream);
 /// Each to its place; the counts become 0 again.
 void launch_gather_fluid(const StepConstants& constants, const FluidView& from, const SortView& sort,
                          const SortedFluid& to, cudaStream_t stream);
+/// Where the bodies' motions take them, their keys, counted for `sort`.
 void launch_place_surface(const StepConstants& constants, const LocalSurface& local, const DeviceBody* bodies,
-                          cudaStream_t stream);
+                          const SortView& sort, cudaStream_t stream);
 void launch_gather_surface(const StepConstants& constants, const LocalSurface& from, const SortView& sort,
                            const SortedSurface& to, cudaStream_t stream);
 void launch_carry_probes(const StepConstants& constants, const DeviceProbe* probes,
@@ -271,15 +298,10 @@ void launch_integrate(const StepConstants& constants, const ParticleKind* kinds,
 void launch_surface_forces(const StepConstants& constants, const Plan& plan, float first_viscosity,
                            const SortedFluid& fluid, const SortedSurface& surface, const std::uint8_t* wanted,
                            const LocalSurface& local, bool with_drag, cudaStream_t stream);
-/// Eq 10–12, summed in double in a fixed shape: chunk by chunk, then body by body.
-void launch_wrenches(const LocalSurface& fixed, const LocalSurface& moving, const DeviceBody* bodies,
-                     const WrenchChunk* chunks, std::uint32_t chunk_count, DeviceWrench* partial,
-                     const WrenchRange* ranges, std::uint32_t range_count, DeviceWrench* wrenches,
-                     cudaStream_t stream);
-/// The drag of the free bodies among them, in the same shape; the others' is zero.
-void launch_body_drags(const LocalSurface& moving, const DeviceBody* bodies, const WrenchChunk* chunks,
-                       std::uint32_t chunk_count, BodyDrag* partial, const WrenchRange* ranges,
-                       std::uint32_t range_count, BodyDrag* drags, cudaStream_t stream);
+/// Eq 10–12 and the drag of the free bodies, the others' being zero: either null where it is not asked for.
+/// Summed in double in a fixed shape: chunk by chunk, then body by body.
+void launch_sums(const LocalSurface& fixed, const LocalSurface& moving, const DeviceBody* bodies,
+                 const SumPlan& plan, DeviceWrench* wrenches, BodyDrag* drags, cudaStream_t stream);
 
 /// drag.cu: adds to fluid.force the drag of `moving` by the velocities of `twists` (one a body); its own are
 /// lost.

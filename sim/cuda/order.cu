@@ -11,7 +11,90 @@ __global__ void count_keys_kernel(const std::uint32_t* keys, std::uint32_t count
   if (p >= count) return;
   const std::uint32_t key = keys[p];
   const bool stays = key >= retired && out_before && p >= *out_before;
-  sort.tickets[p] = stays ? SortView::kStays : atomicAdd(sort.counts + key, 1u);
+  sort.tickets[p] = stays ? SortView::kStays : take_ticket(sort, key, retired);
+}
+
+/// What the block's threads before this one have, and all of them together.
+struct BlockSum {
+  std::uint32_t before, all;
+};
+template <int threads>
+__device__ BlockSum sum_over_block(std::uint32_t own) {
+  constexpr int kWarps = threads / 32;
+  __shared__ std::uint32_t warps[kWarps];
+  const int lane = static_cast<int>(threadIdx.x % 32), warp = static_cast<int>(threadIdx.x / 32);
+  std::uint32_t up_to = own;
+  for (int by = 1; by < 32; by *= 2) {
+    const std::uint32_t other = __shfl_up_sync(0xffffffffu, up_to, by);
+    if (lane >= by) up_to += other;
+  }
+  __syncthreads();  // who has still to read what the last call left
+  if (lane == 31) warps[warp] = up_to;
+  __syncthreads();
+  BlockSum sum{up_to - own, 0};
+  for (int w = 0; w < kWarps; ++w) {
+    if (w < warp) sum.before += warps[w];
+    sum.all += warps[w];
+  }
+  return sum;
+}
+
+constexpr int kTileSumThreads = 1024;
+constexpr int kTileThreads = 256;
+
+// One block: where each tile begins, and who is out.
+__global__ __launch_bounds__(kTileSumThreads) void tile_kernel(SortView sort, std::uint32_t tiles,
+                                                               std::uint32_t* out_start) {
+  constexpr std::uint32_t kEach = 4;
+  std::uint32_t start = 0;
+  for (std::uint32_t base = 0; base < tiles; base += kEach * kTileSumThreads) {
+    const std::uint32_t first = base + kEach * threadIdx.x;
+    std::uint32_t n[kEach], own = 0;
+    for (std::uint32_t i = 0; i < kEach; ++i) n[i] = first + i < tiles ? sort.in_tile[first + i] : 0;
+    for (std::uint32_t i = 0; i < kEach; ++i) own += n[i];
+    const BlockSum sum = sum_over_block<kTileSumThreads>(own);
+    std::uint32_t at = start + sum.before;
+    for (std::uint32_t i = 0; i < kEach && first + i < tiles; ++i) {
+      sort.tile_start[first + i] = at;
+      at += n[i];
+      if (n[i]) sort.in_tile[first + i] = 0;
+    }
+    start += sum.all;
+  }
+  if (threadIdx.x == 0) sort.tile_start[tiles] = *out_start = start;
+}
+
+// A block a tile: where each of its cells begins. Four counts are read at a time: a line is a multiple.
+__global__ __launch_bounds__(kTileThreads) void cells_kernel(SortView sort, std::uint32_t cell_count,
+                                                             CellTable cells) {
+  const std::uint32_t tile = blockIdx.x;
+  const std::uint32_t begin = sort.tile_start[tile];
+  const bool filled = sort.tile_start[tile + 1] > begin;
+  if (!filled && !cells.filled[tile]) return;
+  __syncthreads();
+  if (threadIdx.x == 0) cells.filled[tile] = filled;
+  const std::uint32_t first = tile * sort.tile_cells;
+  const std::uint32_t size = min(sort.tile_cells, cell_count - first) / 4;
+  const auto* counts = reinterpret_cast<const uint4*>(sort.counts + first);
+  auto* starts = reinterpret_cast<uint4*>(cells.start + first);
+  constexpr std::uint32_t kEach = 4;
+  std::uint32_t start = begin;
+  for (std::uint32_t base = 0; base < size; base += kEach * kTileThreads) {
+    const std::uint32_t at = base + kEach * threadIdx.x;
+    uint4 n[kEach];
+    std::uint32_t own = 0;
+    for (std::uint32_t i = 0; i < kEach; ++i)
+      n[i] = filled && at + i < size ? counts[at + i] : make_uint4(0, 0, 0, 0);
+    for (const uint4& four : n) own += four.x + four.y + four.z + four.w;
+    const BlockSum sum = sum_over_block<kTileThreads>(own);
+    std::uint32_t next = start + sum.before;
+    for (std::uint32_t i = 0; i < kEach && at + i < size; ++i) {
+      starts[at + i] =
+          make_uint4(next, next + n[i].x, next + n[i].x + n[i].y, next + n[i].x + n[i].y + n[i].z);
+      next += n[i].x + n[i].y + n[i].z + n[i].w;
+    }
+    start += sum.all;
+  }
 }
 
 __global__ void note_sources_kernel(const std::uint32_t* keys, std::uint32_t count,
@@ -51,7 +134,8 @@ __global__ void gather_fluid_kernel(StepConstants c, FluidView from, SortView so
   to.state.key[place] = key;
 }
 
-__global__ void place_surface_kernel(StepConstants c, LocalSurface local, const DeviceBody* bodies) {
+__global__ void place_surface_kernel(StepConstants c, LocalSurface local, const DeviceBody* bodies,
+                                     SortView sort) {
   const std::uint32_t i = thread_index();
   if (i >= local.count) return;
   const SurfaceMotion& motion = bodies[local.body[i]].motion;
@@ -61,7 +145,10 @@ __global__ void place_surface_kernel(StepConstants c, LocalSurface local, const 
   local.placed[i] = make_float4(x.x, x.y, x.z, at.w);
   local.velocity[i] = make_float4(v.x, v.y, v.z, local.material[i].x);
   // Outside the domain there is no fluid to meet.
-  local.key[i] = c.grid.contains(x.x, x.y, x.z) ? c.grid.cell_of(x.x, x.y, x.z) : c.grid.retired_key();
+  const std::uint32_t retired = c.grid.retired_key();
+  const std::uint32_t key = c.grid.contains(x.x, x.y, x.z) ? c.grid.cell_of(x.x, x.y, x.z) : retired;
+  local.key[i] = key;
+  sort.tickets[i] = take_ticket(sort, key, retired);
 }
 
 __global__ void gather_surface_kernel(StepConstants c, LocalSurface from, SortView sort, SortedSurface to) {
@@ -119,9 +206,12 @@ void launch_count_keys(const std::uint32_t* keys, std::uint32_t count, std::uint
   count_keys_kernel<<<blocks_for(count), kThreads, 0, stream>>>(keys, count, retired, out_before, sort);
 }
 
-void launch_note_sources(const std::uint32_t* keys, std::uint32_t count, const std::uint32_t* start,
-                         const SortView& sort, cudaStream_t stream) {
-  note_sources_kernel<<<blocks_for(count), kThreads, 0, stream>>>(keys, count, start, sort);
+void launch_find_cells(const std::uint32_t* keys, std::uint32_t count, std::uint32_t retired,
+                       const CellTiles& tiles, const SortView& sort, const CellTable& cells,
+                       cudaStream_t stream) {
+  tile_kernel<<<1, kTileSumThreads, 0, stream>>>(sort, tiles.count, cells.start + retired);
+  cells_kernel<<<tiles.count, kTileThreads, 0, stream>>>(sort, retired, cells);
+  note_sources_kernel<<<blocks_for(count), kThreads, 0, stream>>>(keys, count, cells.start, sort);
 }
 
 void launch_gather_fluid(const StepConstants& constants, const FluidView& from, const SortView& sort,
@@ -130,8 +220,8 @@ void launch_gather_fluid(const StepConstants& constants, const FluidView& from, 
 }
 
 void launch_place_surface(const StepConstants& constants, const LocalSurface& local, const DeviceBody* bodies,
-                          cudaStream_t stream) {
-  place_surface_kernel<<<blocks_for(local.count), kThreads, 0, stream>>>(constants, local, bodies);
+                          const SortView& sort, cudaStream_t stream) {
+  place_surface_kernel<<<blocks_for(local.count), kThreads, 0, stream>>>(constants, local, bodies, sort);
 }
 
 void launch_gather_surface(const StepConstants& constants, const LocalSurface& from, const SortView& sort,

@@ -63,6 +63,18 @@ inline constexpr TeamSizes kTensorTeams{100'000, 0};
 inline constexpr TeamSizes kDensityTeams{50'000, 100'000};
 inline constexpr TeamSizes kForceTeams{100'000, 700'000};
 
+/// The ticket of who has this key.
+__device__ inline std::uint32_t take_ticket(const SortView& sort, std::uint32_t key, std::uint32_t retired) {
+  if (key < retired) {
+    // Neighbours in memory lie in one tile: one of the warp's threads counts for all of it.
+    const std::uint32_t tile = key / sort.tile_cells;
+    const unsigned same = __match_any_sync(__activemask(), tile);
+    if (__ffs(static_cast<int>(same)) == static_cast<int>(threadIdx.x % 32u) + 1)
+      atomicAdd(sort.in_tile + tile, static_cast<std::uint32_t>(__popc(same)));
+  }
+  return atomicAdd(sort.counts + key, 1u);
+}
+
 /// Particles [begin, end) in sorted order.
 struct RowRange {
   std::uint32_t begin, end;

@@ -12,12 +12,11 @@ CudaState::CudaState(const RunConstants& constants_in, const ParticleStart& star
       fluid_count(start.fluid_count) {
   check.ok(cudaStreamCreateWithFlags(&stream, cudaStreamNonBlocking), "cudaStreamCreate");
   clock.start(check);
-  const std::uint32_t retired = step.grid.retired_key();
-  fluid.allocate(start.particles.kind.size(), constants, retired, check);
-  fixed.allocate(start.fixed, retired, check);
-  moving.allocate(start.moving, retired, check);
+  fluid.allocate(start.particles.kind.size(), constants, step.grid, check);
+  fixed.allocate(start.fixed, step.grid, check);
+  moving.allocate(start.moving, step.grid, check);
   const std::size_t largest = std::max({start.particles.size(), start.fixed.size(), start.moving.size()});
-  space.allocate(static_cast<std::uint32_t>(largest), retired, check);
+  space.allocate(static_cast<std::uint32_t>(largest), step.grid, check);
   kinds.upload(constants.kinds, check);
   sums.plan(constants.plan, start, bodies.size(), check);
   clamps.plan(constants, start, bodies.size(), check);

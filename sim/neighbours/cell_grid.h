@@ -32,12 +32,14 @@ class CellGrid {
     inverse_cell_ = glm::vec3(static_cast<float>(1.0 / cell));
     cells_ = glm::uvec3(glm::floor(extent / cell) + 3.0);
   }
-  /// The same cells, each in up to `slices` across x: a row's run is shorter by up to a quarter.
+  /// The same cells, each in up to `slices` across x: a row's run is shorter by up to a quarter. A line of
+  /// them along x is a multiple of four and ends with one that no row reaches.
   CellGrid sliced(std::uint32_t slices) const {
     CellGrid grid = *this;
-    while (slices > 1 && static_cast<double>(cell_count()) * slices > kMaxSlices) slices /= 2;
+    const auto line = [&] { return (cells_.x * slices + 5) / 4 * 4; };
+    while (slices > 1 && static_cast<double>(line()) * cells_.y * cells_.z > kMaxSlices) slices /= 2;
     grid.inverse_cell_.x *= static_cast<float>(slices);
-    grid.cells_.x *= slices;
+    grid.cells_.x = line();
     grid.slices_ = slices;
     return grid;
   }
@@ -55,6 +57,8 @@ class CellGrid {
     return c.x + cells_.x * (c.y + cells_.y * c.z);
   }
   SLOSH_HD std::uint32_t cell_count() const { return cells_.x * cells_.y * cells_.z; }
+  /// Cells of a line along x, which follow each other.
+  SLOSH_HD std::uint32_t line_cells() const { return cells_.x; }
   /// Key of a particle that is out of the world: sorts behind all cells.
   SLOSH_HD std::uint32_t retired_key() const { return cell_count(); }
   /// How many cells of a row may hold neighbours: one, and `slices` on either side.

@@ -14,23 +14,26 @@ __global__ void set_velocities_kernel(SortedSurface surface, const DeviceBody* t
   surface.v[i] = make_float4(v.x, v.y, v.z, surface.v[i].w);
 }
 
-template <class Parts>
+template <class Team, class Parts>
 __global__ __launch_bounds__(kThreads) void drag_kernel(StepConstants c, const ParticleKind* kinds,
                                                         SortedFluid fluid, SortedSurface moving) {
-  const std::uint32_t p = thread_index();
+  const std::uint32_t p = Team::particle();
   if (p >= fluid.count) return;
   const std::uint32_t cell = fluid.state.key[p];
   if (cell >= c.grid.retired_key()) return;
+  float4 force = fluid.force[p];
+  if (force.w == 0.0f) return;  // no body is near
   const ParticleView<float> self =
       view(fluid.state.x[p], fluid.state.v[p], kinds[fluid.state.kind[p]].viscosity);
   ForceSum<float> sum{0.0f, 0.0f, 0.0f};
-  for_each_dragged<Alone, Viscosity::kPair, Neighbours::kWalls>(
+  for_each_dragged<Team, Viscosity::kPair, Neighbours::kWalls>(
       c, self, columns(moving), moving.cells, cell, c.support_radius, 1.0f,
       [&](const ParticleView<float>& i, float reach) {
         add_pair_viscosity<typename Parts::ForceKernel, Parts::kDrag>(self, i, reach, c.drag_shape, 1.0f,
                                                                       sum);
       });
-  float4 force = fluid.force[p];
+  Team::sum(sum.x, sum.y, sum.z);
+  if (Team::lane() != 0) return;
   force.x += c.force_scale * sum.x;
   force.y += c.force_scale * sum.y;
   force.z += c.force_scale * sum.z;
@@ -45,7 +48,11 @@ void launch_drag(const StepConstants& constants, const Plan& plan, const Particl
   if (moving.count == 0) return;
   set_velocities_kernel<<<blocks_for(moving.count), kThreads, 0, stream>>>(moving, twists);
   with_model(plan.model, [&]<class Parts>() {
-    drag_kernel<Parts><<<blocks_for(fluid.count), kThreads, 0, stream>>>(constants, kinds, fluid, moving);
+    with_team<kTensorTeams>(fluid.count, [&]<class Team>() {
+      const auto kernel = drag_kernel<Team, Parts>;
+      kernel<<<blocks_for(fluid.count * Team::kLanes), kThreads, 0, stream>>>(constants, kinds, fluid,
+                                                                              moving);
+    });
   });
 }
 

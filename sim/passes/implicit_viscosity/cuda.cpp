@@ -72,7 +72,7 @@ void ViscousSolver::write_rows(const SolveSides& sides, float dt, CallCheck& che
   launch_viscous_rows(sides.constants, sides.plan, sides.kinds.data(), sides.first_viscosity, dt, sides.fluid,
                       sides.fixed.sorted(), sides.moving.sorted(), sides.moving.local(), view_, stream);
   check.launched("viscous pairs");
-  sums_->sum_drags({sides.fixed, sides.moving}, sides.bodies, found_drags(), check, stream);
+  sums_->sum({sides.fixed, sides.moving}, sides.bodies, nullptr, found_drags(), check, stream);
 }
 
 // The copy before has been made: solve() waits where there are bodies to send.
@@ -99,7 +99,7 @@ void ViscousSolver::solve(const SolveSides& sides, float dt, std::span<const Vis
     launch_drag_on_fixed(sides.constants, sides.plan, sides.first_viscosity, sides.fluid,
                          sides.fixed.sorted(), sums_->wanted(), sides.fixed.local(), view_, stream);
     check.launched("drag on fixed bodies");
-    sums_->sum_wrenches({sides.fixed, sides.moving}, sides.bodies, fixed_wrenches(), check, stream);
+    sums_->sum({sides.fixed, sides.moving}, sides.bodies, fixed_wrenches(), nullptr, check, stream);
   }
   if (check.failed()) return;
   check.ok(cudaMemcpyAsync(got_.data(), back_.data(), back_.bytes(), cudaMemcpyDeviceToHost, stream),

@@ -66,7 +66,7 @@ __global__ __launch_bounds__(kThreads) void integrate_kernel(StepConstants c, co
     status |= isfinite(x.x) && isfinite(x.y) && isfinite(x.z) ? kStatusEscaped : kStatusNonFinite;
   }
   fluid.state.key[p] = key;
-  if (sort.tickets) sort.tickets[p] = atomicAdd(sort.counts + key, 1u);
+  if (sort.tickets) sort.tickets[p] = take_ticket(sort, key, retired);
   fluid.state.x[p] = make_float4(x.x, x.y, x.z, 0.0f);
   fluid.state.v[p] = make_float4(v.x, v.y, v.z, v4.w);
   if (status) atomicOr(out_status, status);

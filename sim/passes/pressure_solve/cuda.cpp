@@ -91,8 +91,8 @@ void PressureSolver::measure_fixed(const SolveSides& sides, CallCheck& check, cu
   launch_surface_forces(sides.constants, sides.plan, sides.first_viscosity, sides.fluid, sides.fixed.sorted(),
                         sums_->wanted(), sides.fixed.local(), false, stream);
   check.launched("pressure on fixed bodies");
-  sums_->sum_wrenches({sides.fixed, sides.moving}, sides.bodies,
-                      reinterpret_cast<DeviceWrench*>(back_.data() + fixed_at_), check, stream);
+  sums_->sum({sides.fixed, sides.moving}, sides.bodies,
+             reinterpret_cast<DeviceWrench*>(back_.data() + fixed_at_), nullptr, check, stream);
 }
 
 void PressureSolver::solve(const SolveSides& sides, double dt, std::span<const ViscousBody> bodies,

@@ -5,8 +5,7 @@ namespace slosh::cuda {
 
 namespace {
 
-constexpr int kSumThreads = 256;
-constexpr int kDragThreads = 128;  // 21 doubles each fit into a block's memory
+constexpr int kSumThreads = 128;
 
 template <class Team, class Parts, Viscosity viscosity, bool with_drag>
 __global__ __launch_bounds__(kThreads) void surface_force_kernel(StepConstants c, float first_viscosity,
@@ -57,76 +56,93 @@ __global__ __launch_bounds__(kThreads) void surface_force_kernel(StepConstants c
   }
 }
 
-__device__ void add_to(DeviceWrench& sum, const DeviceWrench& part) {
-  for (int k = 0; k < 3; ++k) {
-    sum.force[k] += part.force[k];
-    sum.torque[k] += part.torque[k];
-  }
-}
-__device__ void add_to(BodyDrag& sum, const BodyDrag& part) {
-  for (int k = 0; k < BodyDrag::kSize; ++k) sum.upper[k] += part.upper[k];
-}
+// What one thread has.
+struct BodySum {
+  DeviceWrench wrench;
+  BodyDrag drag;
+};
 
-// Sums what each of `threads` threads has over the block; thread 0 returns the whole. The tree's shape
-// depends on nothing.
-template <int threads, class T>
-__device__ T sum_block(const T& own) {
-  __shared__ T shared[threads];
-  shared[threadIdx.x] = own;
-  __syncthreads();
-  for (unsigned half = threads / 2; half > 0; half /= 2) {
-    if (threadIdx.x < half) add_to(shared[threadIdx.x], shared[threadIdx.x + half]);
-    __syncthreads();
-  }
-  return shared[0];
-}
-
-__global__ __launch_bounds__(kSumThreads) void chunk_kernel(LocalSurface fixed, LocalSurface moving,
-                                                            const DeviceBody* bodies,
-                                                            const WrenchChunk* chunks,
-                                                            DeviceWrench* partial) {
-  const WrenchChunk chunk = chunks[blockIdx.x];
+// Eq 10–12 for the particles of one chunk; a body's last block adds its chunks up. The order of the sums
+// hangs on nothing.
+template <bool with_wrench, bool with_drag>
+__global__ __launch_bounds__(kSumThreads) void sum_kernel(LocalSurface fixed, LocalSurface moving,
+                                                          const DeviceBody* bodies, SumPlan plan,
+                                                          DeviceWrench* wrenches, BodyDrag* drags) {
+  constexpr int kFirst = with_wrench ? 0 : SumPlan::kWrench;
+  constexpr int kCount = (with_drag ? SumPlan::kAll : SumPlan::kWrench) - kFirst;
+  constexpr std::uint32_t kWarps = kSumThreads / 32;
+  static_assert(kCount <= 32);
+  __shared__ double shared[kWarps][kCount];
+  __shared__ bool last;
+  const WrenchChunk chunk = plan.chunks[blockIdx.x];
   const LocalSurface& surface = chunk.moving ? moving : fixed;
   const glm::dvec3 center = bodies[chunk.body].position;
-  glm::dvec3 force(0.0), torque(0.0);
+  const std::uint32_t lane = threadIdx.x % 32, warp = threadIdx.x / 32;
+  BodySum own;
   for (std::uint32_t i = chunk.begin + threadIdx.x; i < chunk.end; i += kSumThreads) {
-    const float4 f = surface.force[i];
-    const float4 c = surface.couple[i];
     const float4 x = surface.placed[i];
-    const glm::dvec3 part(f.x, f.y, f.z);
-    force += part;
-    torque += glm::cross(glm::dvec3(x.x, x.y, x.z) - center, part) + glm::dvec3(c.x, c.y, c.z);
+    const glm::dvec3 arm = glm::dvec3(x.x, x.y, x.z) - center;
+    if constexpr (with_wrench) {
+      const float4 f = surface.force[i];
+      const float4 c = surface.couple[i];
+      const glm::dvec3 force(f.x, f.y, f.z);
+      const glm::dvec3 torque = glm::cross(arm, force) + glm::dvec3(c.x, c.y, c.z);
+      for (int k = 0; k < 3; ++k) {
+        own.wrench.force[k] += force[k];
+        own.wrench.torque[k] += torque[k];
+      }
+    }
+    if constexpr (with_drag) {
+      if (!chunk.moving) continue;
+      const float4 a = surface.drag_a[i];
+      const float2 b = surface.drag_b[i];
+      own.drag.add({a.x, a.y, a.z, a.w, b.x, b.y}, arm);
+    }
   }
-  const DeviceWrench sum =
-      sum_block<kSumThreads>(DeviceWrench{{force.x, force.y, force.z}, {torque.x, torque.y, torque.z}});
-  if (threadIdx.x == 0) partial[blockIdx.x] = sum;
-}
-
-__global__ __launch_bounds__(kDragThreads) void chunk_drag_kernel(LocalSurface moving,
-                                                                  const DeviceBody* bodies,
-                                                                  const WrenchChunk* chunks,
-                                                                  BodyDrag* partial) {
-  const WrenchChunk chunk = chunks[blockIdx.x];
-  const glm::dvec3 center = bodies[chunk.body].position;
-  BodyDrag own;
-  for (std::uint32_t i = chunk.begin + threadIdx.x; chunk.moving && i < chunk.end; i += kDragThreads) {
-    const float4 a = moving.drag_a[i];
-    const float2 b = moving.drag_b[i];
-    const float4 x = moving.placed[i];
-    own.add({a.x, a.y, a.z, a.w, b.x, b.y}, glm::dvec3(x.x, x.y, x.z) - center);
+#pragma unroll
+  for (int k = 0; k < kCount; ++k) {
+    const int n = kFirst + k;
+    double value = n < 3                  ? own.wrench.force[n]
+                   : n < SumPlan::kWrench ? own.wrench.torque[n - 3]
+                                          : own.drag.upper[n - SumPlan::kWrench];
+    for (int half = 16; half > 0; half /= 2) value += __shfl_down_sync(0xffffffffu, value, half);
+    if (lane == 0) shared[warp][k] = value;
   }
-  const BodyDrag sum = sum_block<kDragThreads>(own);
-  if (threadIdx.x == 0) partial[blockIdx.x] = sum;
-}
-
-// From the chunks to the bodies.
-template <int threads, class T>
-__global__ __launch_bounds__(threads) void body_kernel(const T* partial, const WrenchRange* ranges, T* sums) {
-  const WrenchRange range = ranges[blockIdx.x];
-  T own;
-  for (std::uint32_t i = range.begin + threadIdx.x; i < range.end; i += threads) add_to(own, partial[i]);
-  const T sum = sum_block<threads>(own);
-  if (threadIdx.x == 0) sums[blockIdx.x] = sum;
+  __syncthreads();
+  const auto over_warps = [&] {
+    double sum = 0.0;
+    for (std::uint32_t w = 0; w < kWarps; ++w) sum += shared[w][threadIdx.x];
+    return sum;
+  };
+  if (threadIdx.x < kCount) plan.partial[blockIdx.x * SumPlan::kAll + threadIdx.x] = over_warps();
+  __threadfence();
+  __syncthreads();
+  const WrenchRange range = plan.ranges[chunk.range];
+  if (threadIdx.x == 0) {
+    last = atomicAdd(plan.done + chunk.range, 1u) + 1 == range.end - range.begin;
+    if (last) plan.done[chunk.range] = 0;
+  }
+  __syncthreads();
+  if (!last) return;
+  __threadfence();
+  if (lane < kCount) {
+    double sum = 0.0;
+#pragma unroll 4
+    for (std::uint32_t c = range.begin + warp; c < range.end; c += kWarps)
+      sum += __ldcg(plan.partial + c * SumPlan::kAll + lane);
+    shared[warp][lane] = sum;
+  }
+  __syncthreads();
+  if (threadIdx.x >= kCount) return;
+  const int n = kFirst + static_cast<int>(threadIdx.x);
+  const double sum = over_warps();
+  if (n < 3) {
+    wrenches[chunk.range].force[n] = sum;
+  } else if (n < SumPlan::kWrench) {
+    wrenches[chunk.range].torque[n - 3] = sum;
+  } else {
+    drags[chunk.range].upper[n - SumPlan::kWrench] = sum;
+  }
 }
 
 }  // namespace
@@ -148,21 +164,12 @@ void launch_surface_forces(const StepConstants& constants, const Plan& plan, flo
   });
 }
 
-void launch_wrenches(const LocalSurface& fixed, const LocalSurface& moving, const DeviceBody* bodies,
-                     const WrenchChunk* chunks, std::uint32_t chunk_count, DeviceWrench* partial,
-                     const WrenchRange* ranges, std::uint32_t range_count, DeviceWrench* wrenches,
-                     cudaStream_t stream) {
-  if (chunk_count == 0) return;
-  chunk_kernel<<<chunk_count, kSumThreads, 0, stream>>>(fixed, moving, bodies, chunks, partial);
-  body_kernel<kSumThreads><<<range_count, kSumThreads, 0, stream>>>(partial, ranges, wrenches);
-}
-
-void launch_body_drags(const LocalSurface& moving, const DeviceBody* bodies, const WrenchChunk* chunks,
-                       std::uint32_t chunk_count, BodyDrag* partial, const WrenchRange* ranges,
-                       std::uint32_t range_count, BodyDrag* drags, cudaStream_t stream) {
-  if (chunk_count == 0) return;
-  chunk_drag_kernel<<<chunk_count, kDragThreads, 0, stream>>>(moving, bodies, chunks, partial);
-  body_kernel<kDragThreads><<<range_count, kDragThreads, 0, stream>>>(partial, ranges, drags);
+void launch_sums(const LocalSurface& fixed, const LocalSurface& moving, const DeviceBody* bodies,
+                 const SumPlan& plan, DeviceWrench* wrenches, BodyDrag* drags, cudaStream_t stream) {
+  const auto kernel = !drags     ? sum_kernel<true, false>
+                      : wrenches ? sum_kernel<true, true>
+                                 : sum_kernel<false, true>;
+  kernel<<<plan.chunk_count, kSumThreads, 0, stream>>>(fixed, moving, bodies, plan, wrenches, drags);
 }
 
 }  // namespace slosh::cuda

@@ -8,8 +8,8 @@ void cuda::find_wrenches(CudaState& s) {
   const SurfaceSides sides{s.fixed, s.moving};
   s.sums.find_forces(s.step, plan, s.constants.kinds.front().viscosity, s.fluid.sorted(), sides, with_drag,
                      s.check, s.stream);
-  s.sums.sum_wrenches(sides, s.sent.bodies(), s.report.wrenches(), s.check, s.stream);
-  if (with_drag) s.sums.sum_drags(sides, s.sent.bodies(), s.report.drags(), s.check, s.stream);
+  s.sums.sum(sides, s.sent.bodies(), s.report.wrenches(), with_drag ? s.report.drags() : nullptr, s.check,
+             s.stream);
 }
 
 }  // namespace slosh

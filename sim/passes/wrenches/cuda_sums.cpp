@@ -6,7 +6,11 @@ namespace slosh::cuda {
 
 namespace {
 
-constexpr std::uint32_t kChunk = 1024;  // body particles that one block sums
+/// Body particles that one block sums, of a body of `count`: so few chunks that their sum costs little.
+std::uint32_t chunk_of(std::uint32_t count) {
+  constexpr std::uint32_t kFewest = 256, kMostChunks = 128;
+  return std::max(kFewest, (count + kMostChunks - 1) / kMostChunks);
+}
 
 }  // namespace
 
@@ -24,10 +28,11 @@ void WrenchSums::plan(const Plan& plan, const ParticleStart& start, std::size_t 
       while (end < count && particles[end].body == body) ++end;
       if (wanted[body]) {
         const std::uint32_t first = static_cast<std::uint32_t>(chunks.size());
-        for (std::uint32_t i = begin; i < end; i += kChunk) {
-          chunks.push_back({i, std::min(i + kChunk, end), body, moving ? 1u : 0u});
-        }
-        ranges.push_back({first, static_cast<std::uint32_t>(chunks.size()), body});
+        const std::uint32_t chunk = chunk_of(end - begin), range = static_cast<std::uint32_t>(ranges.size());
+        for (std::uint32_t i = begin; i < end; i += chunk)
+          chunks.push_back({i, std::min(i + chunk, end), body, moving ? 1u : 0u, range});
+        ranges.push_back({first, static_cast<std::uint32_t>(chunks.size())});
+        summed_.push_back(body);
         (moving ? moving_measured_ : fixed_measured_) = true;
       }
       begin = end;
@@ -37,12 +42,11 @@ void WrenchSums::plan(const Plan& plan, const ParticleStart& start, std::size_t 
     cut(start.moving, true);
     cut(start.fixed, false);
   }
-  for (const WrenchRange& range : ranges) summed_.push_back(range.body);
   wanted_.upload(wanted, check);
   chunks_.upload(chunks, check);
   ranges_.upload(ranges, check);
-  partial_.allocate(chunks.size(), check);
-  partial_drags_.allocate(chunks.size(), check);
+  partial_.allocate(chunks.size() * SumPlan::kAll, check);
+  done_.allocate(ranges.size(), check);
 }
 
 void WrenchSums::find_forces(const StepConstants& constants, const Plan& plan, float first_viscosity,
@@ -58,20 +62,13 @@ void WrenchSums::find_forces(const StepConstants& constants, const Plan& plan, f
   if (fixed_measured_ && !plan.has(PassId::kPressureSolve)) find(sides.fixed, false);
 }
 
-void WrenchSums::sum_wrenches(const SurfaceSides& sides, const DeviceBody* bodies, DeviceWrench* wrenches,
-                              CallCheck& check, cudaStream_t stream) const {
+void WrenchSums::sum(const SurfaceSides& sides, const DeviceBody* bodies, DeviceWrench* wrenches,
+                     BodyDrag* drags, CallCheck& check, cudaStream_t stream) const {
   if (summed_.empty() || check.failed()) return;
-  launch_wrenches(sides.fixed.local(), sides.moving.local(), bodies, chunks_.data(), chunk_count(),
-                  partial_.data(), ranges_.data(), range_count(), wrenches, stream);
-  check.launched("wrenches");
-}
-
-void WrenchSums::sum_drags(const SurfaceSides& sides, const DeviceBody* bodies, BodyDrag* drags,
-                           CallCheck& check, cudaStream_t stream) const {
-  if (summed_.empty() || check.failed()) return;
-  launch_body_drags(sides.moving.local(), bodies, chunks_.data(), chunk_count(), partial_drags_.data(),
-                    ranges_.data(), range_count(), drags, stream);
-  check.launched("drag on bodies");
+  const SumPlan plan{chunks_.data(), static_cast<std::uint32_t>(chunks_.size()), ranges_.data(),
+                     partial_.data(), done_.data()};
+  launch_sums(sides.fixed.local(), sides.moving.local(), bodies, plan, wrenches, drags, stream);
+  check.launched("sums over bodies");
 }
 
 }  // namespace slosh::cuda

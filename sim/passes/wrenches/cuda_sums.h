@@ -43,23 +43,18 @@ class WrenchSums {
   void find_forces(const StepConstants& constants, const Plan& plan, float first_viscosity,
                    const SortedFluid& fluid, const SurfaceSides& sides, bool with_drag, CallCheck& check,
                    cudaStream_t stream) const;
-  /// The particles' forces, to bodies().size() wrenches.
-  void sum_wrenches(const SurfaceSides& sides, const DeviceBody* bodies, DeviceWrench* wrenches,
-                    CallCheck& check, cudaStream_t stream) const;
-  /// And the drag of free ones' particles; the other bodies' is zero.
-  void sum_drags(const SurfaceSides& sides, const DeviceBody* bodies, BodyDrag* drags, CallCheck& check,
-                 cudaStream_t stream) const;
+  /// The particles' forces, to bodies().size() wrenches, and the drag of free ones' particles, the others'
+  /// being zero, to as many. Either may be null.
+  void sum(const SurfaceSides& sides, const DeviceBody* bodies, DeviceWrench* wrenches, BodyDrag* drags,
+           CallCheck& check, cudaStream_t stream) const;
 
  private:
   DeviceBuffer<std::uint8_t> wanted_;  // one a body
   DeviceBuffer<WrenchChunk> chunks_;
   DeviceBuffer<WrenchRange> ranges_;
-  DeviceBuffer<DeviceWrench> partial_;
-  DeviceBuffer<BodyDrag> partial_drags_;
+  DeviceBuffer<double> partial_;
+  DeviceBuffer<std::uint32_t> done_;
   bool fixed_measured_ = false, moving_measured_ = false;
-  std::uint32_t chunk_count() const { return static_cast<std::uint32_t>(chunks_.size()); }
-  std::uint32_t range_count() const { return static_cast<std::uint32_t>(ranges_.size()); }
-
   std::vector<std::uint32_t> summed_;  // body of each range
 };
 

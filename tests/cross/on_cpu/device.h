@@ -69,6 +69,16 @@ T shuffle_down(T value, int by) {
 }
 
 template <class T>
+T shuffle_up(T value, int by) {
+  const unsigned thread = thread_index.x;
+  shuffled[thread] = value;
+  block_barrier();
+  const T other = static_cast<int>(thread % 32) >= by ? static_cast<T>(shuffled[thread - by]) : value;
+  block_barrier();
+  return other;
+}
+
+template <class T>
 T shuffle_xor(unsigned members, T value, int by) {
   const unsigned thread = thread_index.x;
   // Nobody is more than one exchange ahead of its team, so two places in turn are enough.
@@ -86,12 +96,32 @@ T shuffle_xor(unsigned members, T value, int by) {
 #define gridDim on_cpu::grid_size
 #define __syncthreads on_cpu::block_barrier
 #define __shfl_down_sync(mask, value, by) on_cpu::shuffle_down(value, by)
+#define __shfl_up_sync(mask, value, by) on_cpu::shuffle_up(value, by)
 #define __shfl_xor_sync(mask, value, by) on_cpu::shuffle_xor(mask, value, by)
 
 template <class T>
 T __ldg(const T* at) {
   return *at;
 }
+template <class T>
+T __ldcg(const T* at) {
+  return *at;
+}
+// A thread runs until it waits, so that it is alone.
+inline unsigned __activemask() {
+  return 1u << on_cpu::thread_index.x % 32;
+}
+template <class T>
+unsigned __match_any_sync(unsigned threads, T) {
+  return threads;
+}
+inline int __ffs(int bits) {
+  return __builtin_ffs(bits);
+}
+inline int __popc(unsigned bits) {
+  return __builtin_popcount(bits);
+}
+inline void __threadfence() {}
 template <class T>
 T __ldcs(const T* at) {
   return *at;

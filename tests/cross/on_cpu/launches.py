@@ -6,9 +6,8 @@ import re
 import sys
 
 # Those whose threads wait for others of their block, and run as fibers. Waiting in any other ends the program with
-# words. "kernel" is what surface_force_kernel is called where it is launched.
-WAITING = {"chunk_kernel", "chunk_drag_kernel", "body_kernel", "density_kernel", "corrected_density_kernel",
-           "force_kernel", "kernel"}
+# words. "kernel" is what a kernel is called that is chosen where it is launched.
+WAITING = {"density_kernel", "corrected_density_kernel", "force_kernel", "kernel", "tile_kernel", "cells_kernel"}
 
 
 def split(text):
