@@ -76,12 +76,18 @@ __device__ inline float reach_of(const NeighborColumns& n, std::uint32_t j, floa
   return h;
 }
 
-/// Adds the forces of the neighbours, or of the thread's share of them. `h`: within which p meets fluid, m.
+struct NothingBesides {
+  __device__ void operator()(const ParticleView<float>&, float) const {}
+};
+
+/// Adds the forces of the neighbours, or of the thread's share of them, and calls also(i, reach) of each.
+/// `h`: within which p meets fluid, m.
 template <class Team, class Parts, PairRule rule, Viscosity viscosity,
-          Neighbours neighbours = Neighbours::kFluid, class Walk, class Sum = ForceSum<float>>
+          Neighbours neighbours = Neighbours::kFluid, class Walk, class Sum = ForceSum<float>,
+          class Also = NothingBesides>
 __device__ inline void add_forces(const StepConstants& c, const ParticleView<float>& p,
                                   const NeighborColumns& n, const Walk& walk, float h, Sum& sum,
-                                  float of_fluid = 1.0f) {
+                                  float of_fluid = 1.0f, const Also& also = {}) {
   constexpr bool kOfFluid = is_corrected_fluid(rule) || is_corrected_body(rule);
   // With one viscosity, viscosity times velocity is in u already.
   constexpr bool kViscous =
@@ -117,6 +123,7 @@ __device__ inline void add_forces(const StepConstants& c, const ParticleView<flo
     if constexpr (kViscous) i.viscosity = viscosity_of<viscosity, neighbours>(p, n, j, of_fluid);
     add_pair_force<typename Parts::ForceKernel, rule, Parts::kDrag, kViscous>(
         p, i, reach_of<neighbours>(n, j, h), c.drag_shape, 1.0f, sum);
+    also(i, reach_of<neighbours>(n, j, h));
   });
 }
 
@@ -124,15 +131,15 @@ __device__ inline ParticleView<float> view(const float4& x, const float4& v, flo
   return {x.x, x.y, x.z, v.x, v.y, v.z, x.w, v.w, viscosity, {}, 0.0f, 0.0f, 0.0f};
 }
 
-/// Calls f(i, reach) for the neighbours of p as the viscous force sees them, or the thread's share of them.
-/// `h`: within which p meets fluid, m.
-template <class Team, Viscosity viscosity, Neighbours neighbours, class F>
-__device__ inline void for_each_dragged(const StepConstants& c, const ParticleView<float>& p,
-                                        const NeighborColumns& n, const CellTable& cells, std::uint32_t cell,
-                                        float h, float of_fluid, F&& f) {
+/// Calls f(i, reach) for the bodies' particles around p as the viscous force sees them, or the thread's share
+/// of them.
+template <class Team, class F>
+__device__ inline void for_each_dragging(const StepConstants& c, const ParticleView<float>& p,
+                                         const NeighborColumns& n, const CellTable& cells, std::uint32_t cell,
+                                         F&& f) {
   for_neighbors<Team>(c.grid, cells, cell, [&](std::uint32_t j) {
-    f(view(__ldg(n.x + j), __ldg(n.v + j), viscosity_of<viscosity, neighbours>(p, n, j, of_fluid)),
-      reach_of<neighbours>(n, j, h));
+    const float viscosity = viscosity_of<Viscosity::kPair, Neighbours::kWalls>(p, n, j, 1.0f);
+    f(view(__ldg(n.x + j), __ldg(n.v + j), viscosity), __ldg(n.reach + j));
   });
 }
 

@@ -26,12 +26,11 @@ __global__ __launch_bounds__(kThreads) void drag_kernel(StepConstants c, const P
   const ParticleView<float> self =
       view(fluid.state.x[p], fluid.state.v[p], kinds[fluid.state.kind[p]].viscosity);
   ForceSum<float> sum{0.0f, 0.0f, 0.0f};
-  for_each_dragged<Team, Viscosity::kPair, Neighbours::kWalls>(
-      c, self, columns(moving), moving.cells, cell, c.support_radius, 1.0f,
-      [&](const ParticleView<float>& i, float reach) {
-        add_pair_viscosity<typename Parts::ForceKernel, Parts::kDrag>(self, i, reach, c.drag_shape, 1.0f,
-                                                                      sum);
-      });
+  for_each_dragging<Team>(c, self, columns(moving), moving.cells, cell,
+                          [&](const ParticleView<float>& i, float reach) {
+                            add_pair_viscosity<typename Parts::ForceKernel, Parts::kDrag>(
+                                self, i, reach, c.drag_shape, 1.0f, sum);
+                          });
   Team::sum(sum.x, sum.y, sum.z);
   if (Team::lane() != 0) return;
   force.x += c.force_scale * sum.x;

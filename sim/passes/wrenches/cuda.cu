@@ -25,21 +25,19 @@ __global__ __launch_bounds__(kThreads) void surface_force_kernel(StepConstants c
         viscosity == Viscosity::kOne ? 0.5f * (wall.own + wall.of_fluid * first_viscosity) : wall.own;
     const ParticleView<float> self = view(surface.x[i], surface.v[i], used);
     const float h = surface.reach[i];
+    const auto rates = [&](const ParticleView<float>& p, float reach) {
+      if constexpr (with_drag) {
+        add_pair_viscosity_rate<typename Parts::ForceKernel, Parts::kDrag>(self, p, reach, c.drag_shape, 1.0f,
+                                                                           rate);
+      }
+    };
     add_forces<Team, Parts, Parts::kOnBodies, viscosity>(
-        c, self, columns(fluid), CellWalk<Team>{c.grid, fluid.cells, cell}, h, sum, wall.of_fluid);
+        c, self, columns(fluid), CellWalk<Team>{c.grid, fluid.cells, cell}, h, sum, wall.of_fluid, rates);
     if constexpr (Parts::kCorrected && viscosity != Viscosity::kNone) {
       const auto as_it_is = [](std::uint32_t, const float4& v) { return make_float3(v.x, v.y, v.z); };
       if (surface.mirror.normal)
         add_forces_on_mirror<Team, Parts, viscosity>(c, surface, i, cell, first_viscosity, fluid, as_it_is,
                                                      sum);
-    }
-    if constexpr (with_drag) {
-      for_each_dragged<Team, viscosity, Neighbours::kFluid>(
-          c, self, columns(fluid), fluid.cells, cell, h, wall.of_fluid,
-          [&](const ParticleView<float>& p, float reach) {
-            add_pair_viscosity_rate<typename Parts::ForceKernel, Parts::kDrag>(self, p, reach, c.drag_shape,
-                                                                               1.0f, rate);
-          });
     }
   }
   Team::sum(sum.x, sum.y, sum.z, sum.cx, sum.cy, sum.cz);
