@@ -7,6 +7,7 @@ namespace {
 
 __global__ void count_keys_kernel(const std::uint32_t* keys, std::uint32_t count, std::uint32_t retired,
                                   const std::uint32_t* out_before, SortView sort) {
+  wait_for_last_kernel();
   const std::uint32_t p = thread_index();
   if (p >= count) return;
   const std::uint32_t key = keys[p];
@@ -45,6 +46,7 @@ constexpr int kTileThreads = 256;
 // One block: where each tile begins, and who is out.
 __global__ __launch_bounds__(kTileSumThreads) void tile_kernel(SortView sort, std::uint32_t tiles,
                                                                std::uint32_t* out_start) {
+  wait_for_last_kernel();
   constexpr std::uint32_t kEach = 4;
   std::uint32_t start = 0;
   for (std::uint32_t base = 0; base < tiles; base += kEach * kTileSumThreads) {
@@ -67,6 +69,7 @@ __global__ __launch_bounds__(kTileSumThreads) void tile_kernel(SortView sort, st
 // A block a tile: where each of its cells begins. Four counts are read at a time: a line is a multiple.
 __global__ __launch_bounds__(kTileThreads) void cells_kernel(SortView sort, std::uint32_t cell_count,
                                                              CellTable cells) {
+  wait_for_last_kernel();
   const std::uint32_t tile = blockIdx.x;
   const std::uint32_t begin = sort.tile_start[tile];
   const bool filled = sort.tile_start[tile + 1] > begin;
@@ -99,6 +102,7 @@ __global__ __launch_bounds__(kTileThreads) void cells_kernel(SortView sort, std:
 
 __global__ void note_sources_kernel(const std::uint32_t* keys, std::uint32_t count,
                                     const std::uint32_t* start, SortView sort) {
+  wait_for_last_kernel();
   const std::uint32_t p = thread_index();
   if (p < count && sort.tickets[p] != SortView::kStays) sort.came[start[keys[p]] + sort.tickets[p]] = p;
 }
@@ -118,6 +122,7 @@ __device__ std::uint32_t place_of(std::uint32_t p, std::uint32_t key, std::uint3
 }
 
 __global__ void gather_fluid_kernel(StepConstants c, FluidView from, SortView sort, SortedFluid to) {
+  wait_for_last_kernel();
   const std::uint32_t p = thread_index();
   if (p >= to.count) return;
   const std::uint32_t key = from.key[p];
@@ -136,6 +141,7 @@ __global__ void gather_fluid_kernel(StepConstants c, FluidView from, SortView so
 
 __global__ void place_surface_kernel(StepConstants c, LocalSurface local, const DeviceBody* bodies,
                                      SortView sort) {
+  wait_for_last_kernel();
   const std::uint32_t i = thread_index();
   if (i >= local.count) return;
   const SurfaceMotion& motion = bodies[local.body[i]].motion;
@@ -152,6 +158,7 @@ __global__ void place_surface_kernel(StepConstants c, LocalSurface local, const 
 }
 
 __global__ void gather_surface_kernel(StepConstants c, LocalSurface from, SortView sort, SortedSurface to) {
+  wait_for_last_kernel();
   const std::uint32_t i = thread_index();
   if (i >= to.count) return;
   const std::uint32_t key = from.key[i];
@@ -167,6 +174,7 @@ __global__ void gather_surface_kernel(StepConstants c, LocalSurface from, SortVi
 
 __global__ void carry_probes_kernel(StepConstants c, const DeviceProbe* probes, const std::uint32_t* slots,
                                     std::uint32_t count, FluidView fluid) {
+  wait_for_last_kernel();
   const std::uint32_t i = thread_index();
   if (i >= count) return;
   const DeviceProbe probe = probes[i];
@@ -178,6 +186,7 @@ __global__ void carry_probes_kernel(StepConstants c, const DeviceProbe* probes, 
 }
 
 __global__ void damp_kernel(float4* velocities, std::uint32_t count, float keep) {
+  wait_for_last_kernel();
   const std::uint32_t p = thread_index();
   if (p >= count) return;
   const float4 v = velocities[p];
@@ -186,6 +195,7 @@ __global__ void damp_kernel(float4* velocities, std::uint32_t count, float keep)
 
 __global__ void scatter_kernel(StepConstants c, FluidView fluid, std::uint32_t count, std::uint32_t visible,
                                float* positions, std::uint8_t* kinds) {
+  wait_for_last_kernel();
   const std::uint32_t p = thread_index();
   if (p >= count) return;
   const std::uint32_t id = fluid.id[p];
@@ -203,46 +213,49 @@ __global__ void scatter_kernel(StepConstants c, FluidView fluid, std::uint32_t c
 
 void launch_count_keys(const std::uint32_t* keys, std::uint32_t count, std::uint32_t retired,
                        const std::uint32_t* out_before, const SortView& sort, cudaStream_t stream) {
-  count_keys_kernel<<<blocks_for(count), kThreads, 0, stream>>>(keys, count, retired, out_before, sort);
+  launch_early(count_keys_kernel, blocks_for(count), kThreads, stream, keys, count, retired, out_before,
+               sort);
 }
 
 void launch_find_cells(const std::uint32_t* keys, std::uint32_t count, std::uint32_t retired,
                        const CellTiles& tiles, const SortView& sort, const CellTable& cells,
                        cudaStream_t stream) {
-  tile_kernel<<<1, kTileSumThreads, 0, stream>>>(sort, tiles.count, cells.start + retired);
-  cells_kernel<<<tiles.count, kTileThreads, 0, stream>>>(sort, retired, cells);
-  note_sources_kernel<<<blocks_for(count), kThreads, 0, stream>>>(keys, count, cells.start, sort);
+  launch_early(tile_kernel, 1, kTileSumThreads, stream, sort, tiles.count, cells.start + retired);
+  launch_early(cells_kernel, tiles.count, kTileThreads, stream, sort, retired, cells);
+  launch_early(note_sources_kernel, blocks_for(count), kThreads, stream, keys, count, cells.start, sort);
 }
 
 void launch_gather_fluid(const StepConstants& constants, const FluidView& from, const SortView& sort,
                          const SortedFluid& to, cudaStream_t stream) {
-  gather_fluid_kernel<<<blocks_for(to.count), kThreads, 0, stream>>>(constants, from, sort, to);
+  launch_early(gather_fluid_kernel, blocks_for(to.count), kThreads, stream, constants, from, sort, to);
 }
 
 void launch_place_surface(const StepConstants& constants, const LocalSurface& local, const DeviceBody* bodies,
                           const SortView& sort, cudaStream_t stream) {
-  place_surface_kernel<<<blocks_for(local.count), kThreads, 0, stream>>>(constants, local, bodies, sort);
+  launch_early(place_surface_kernel, blocks_for(local.count), kThreads, stream, constants, local, bodies,
+               sort);
 }
 
 void launch_gather_surface(const StepConstants& constants, const LocalSurface& from, const SortView& sort,
                            const SortedSurface& to, cudaStream_t stream) {
-  gather_surface_kernel<<<blocks_for(to.count), kThreads, 0, stream>>>(constants, from, sort, to);
+  launch_early(gather_surface_kernel, blocks_for(to.count), kThreads, stream, constants, from, sort, to);
 }
 
 void launch_carry_probes(const StepConstants& constants, const DeviceProbe* probes,
                          const std::uint32_t* slots, std::uint32_t count, const FluidView& fluid,
                          cudaStream_t stream) {
-  carry_probes_kernel<<<blocks_for(count), kThreads, 0, stream>>>(constants, probes, slots, count, fluid);
+  launch_early(carry_probes_kernel, blocks_for(count), kThreads, stream, constants, probes, slots, count,
+               fluid);
 }
 
 void launch_damp(float4* velocities, std::uint32_t count, float keep, cudaStream_t stream) {
-  damp_kernel<<<blocks_for(count), kThreads, 0, stream>>>(velocities, count, keep);
+  launch_early(damp_kernel, blocks_for(count), kThreads, stream, velocities, count, keep);
 }
 
 void launch_scatter(const StepConstants& constants, const FluidView& fluid, std::uint32_t count,
                     std::uint32_t visible, float* positions, std::uint8_t* kinds, cudaStream_t stream) {
-  scatter_kernel<<<blocks_for(count), kThreads, 0, stream>>>(constants, fluid, count, visible, positions,
-                                                             kinds);
+  launch_early(scatter_kernel, blocks_for(count), kThreads, stream, constants, fluid, count, visible,
+               positions, kinds);
 }
 
 }  // namespace slosh::cuda

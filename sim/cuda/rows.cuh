@@ -16,6 +16,37 @@ inline unsigned blocks_for(std::uint32_t count, int threads = kThreads) {
   return (count + static_cast<unsigned>(threads) - 1) / static_cast<unsigned>(threads);
 }
 
+/// Whether the GPU can bring a kernel up while the one before it ends (programmatic dependent launch): up to
+/// a tenth of a step of small kernels.
+inline bool launches_early() {
+  static const bool can = [] {
+    int device = 0, major = 0;
+    return cudaGetDevice(&device) == cudaSuccess &&
+           cudaDeviceGetAttribute(&major, cudaDevAttrComputeCapabilityMajor, device) == cudaSuccess &&
+           major >= 9;
+  }();
+  return can;
+}
+
+/// kernel<<<blocks, threads, 0, stream>>>(arguments…) for a kernel that begins with wait_for_last_kernel().
+template <class... Parameters, class... Arguments>
+void launch_early(void (*kernel)(Parameters...), unsigned blocks, unsigned threads, cudaStream_t stream,
+                  Arguments&&... arguments) {
+  cudaLaunchAttribute early{};
+  early.id = cudaLaunchAttributeProgrammaticStreamSerialization;
+  early.val.programmaticStreamSerializationAllowed = 1;
+  const cudaLaunchConfig_t config{dim3(blocks), dim3(threads), 0, stream, &early, launches_early() ? 1u : 0u};
+  static_cast<void>(cudaLaunchKernelEx(&config, kernel, Parameters(arguments)...));  // CallCheck::launched()
+}
+
+/// Returns when all is over that the stream had before, and lets the next kernel come up to here.
+__device__ inline void wait_for_last_kernel() {
+#if defined(__CUDA_ARCH__) && __CUDA_ARCH__ >= 900
+  cudaTriggerProgrammaticLaunchCompletion();
+  cudaGridDependencySynchronize();
+#endif
+}
+
 __device__ inline std::uint32_t thread_index() {
   return blockIdx.x * blockDim.x + threadIdx.x;
 }

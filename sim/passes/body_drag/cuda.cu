@@ -7,6 +7,7 @@ namespace slosh::cuda {
 namespace {
 
 __global__ void set_velocities_kernel(SortedSurface surface, const DeviceBody* twists) {
+  wait_for_last_kernel();
   const std::uint32_t i = thread_index();
   if (i >= surface.count) return;
   const float4 x = surface.x[i];
@@ -17,6 +18,7 @@ __global__ void set_velocities_kernel(SortedSurface surface, const DeviceBody* t
 template <class Team, class Parts>
 __global__ __launch_bounds__(kThreads) void drag_kernel(StepConstants c, const ParticleKind* kinds,
                                                         SortedFluid fluid, SortedSurface moving) {
+  wait_for_last_kernel();
   const std::uint32_t p = Team::particle();
   if (p >= fluid.count) return;
   const std::uint32_t cell = fluid.state.key[p];
@@ -45,12 +47,12 @@ void launch_drag(const StepConstants& constants, const Plan& plan, const Particl
                  const SortedFluid& fluid, const SortedSurface& moving, const DeviceBody* twists,
                  cudaStream_t stream) {
   if (moving.count == 0) return;
-  set_velocities_kernel<<<blocks_for(moving.count), kThreads, 0, stream>>>(moving, twists);
+  launch_early(set_velocities_kernel, blocks_for(moving.count), kThreads, stream, moving, twists);
   with_model(plan.model, [&]<class Parts>() {
     with_team<kTensorTeams>(fluid.count, [&]<class Team>() {
       const auto kernel = drag_kernel<Team, Parts>;
-      kernel<<<blocks_for(fluid.count * Team::kLanes), kThreads, 0, stream>>>(constants, kinds, fluid,
-                                                                              moving);
+      launch_early(kernel, blocks_for(fluid.count * Team::kLanes), kThreads, stream, constants, kinds, fluid,
+                   moving);
     });
   });
 }

@@ -15,6 +15,7 @@ template <class Team, class Parts>
 __global__ __launch_bounds__(kThreads) void density_kernel(StepConstants c, const ParticleKind* kinds,
                                                            SortedFluid fluid, bool viscosities,
                                                            std::uint32_t* status) {
+  wait_for_last_kernel();
   const std::uint32_t p = Team::particle();
   if (p >= fluid.count) return;
   const std::uint32_t cell = fluid.state.key[p];
@@ -71,6 +72,7 @@ template <class Team, bool solved, bool flows, bool stresses>
 __global__ __launch_bounds__(kThreads, kBlocksOfTensors) void corrected_density_kernel(
     StepConstants c, const ParticleKind* kinds, SortedFluid fluid, SortedSurface fixed, SortedSurface moving,
     bool one_viscosity, bool viscosities, std::uint32_t* status) {
+  wait_for_last_kernel();
   using Kernel = ModelParts<ParticleModel::kCorrected>::DensityKernel;
   const std::uint32_t p = Team::particle();
   if (p >= fluid.count) return;
@@ -198,13 +200,13 @@ void launch_density(const StepConstants& constants, const Plan& plan, const Part
                                 ? corrected_density_kernel<Team, Parts::kSolved, true, true>
                             : artificial ? corrected_density_kernel<Team, Parts::kSolved, true, false>
                                          : corrected_density_kernel<Team, Parts::kSolved, false, false>;
-        kernel<<<blocks_for(fluid.count * Team::kLanes), kThreads, 0, stream>>>(
-            constants, kinds, fluid, fixed, moving, one_viscosity, viscosities, status);
+        launch_early(kernel, blocks_for(fluid.count * Team::kLanes), kThreads, stream, constants, kinds,
+                     fluid, fixed, moving, one_viscosity, viscosities, status);
       });
     } else {
       with_team<kDensityTeams>(fluid.count, [&]<class Team>() {
-        density_kernel<Team, Parts><<<blocks_for(fluid.count * Team::kLanes), kThreads, 0, stream>>>(
-            constants, kinds, fluid, viscosities, status);
+        launch_early(density_kernel<Team, Parts>, blocks_for(fluid.count * Team::kLanes), kThreads, stream,
+                     constants, kinds, fluid, viscosities, status);
       });
     }
   });

@@ -31,6 +31,7 @@ __global__ __launch_bounds__(kThreads) void integrate_kernel(StepConstants c, co
                                                              SortedFluid fluid, float dt, float max_speed,
                                                              ClampView clamps, ProbeOutput probes,
                                                              SortView sort, std::uint32_t* out_status) {
+  wait_for_last_kernel();
   const std::uint32_t p = thread_index();
   if (p >= fluid.count) return;
   const std::uint32_t retired = c.grid.retired_key();
@@ -73,6 +74,7 @@ __global__ __launch_bounds__(kThreads) void integrate_kernel(StepConstants c, co
 }
 
 __global__ void hand_over_kernel(std::int64_t* impulses, std::int64_t* out, std::uint32_t words) {
+  wait_for_last_kernel();
   const std::uint32_t i = thread_index();
   if (i >= words) return;
   out[i] = impulses[i];
@@ -83,14 +85,14 @@ __global__ void hand_over_kernel(std::int64_t* impulses, std::int64_t* out, std:
 
 void launch_hand_over(std::int64_t* impulses, std::int64_t* out, std::size_t words, cudaStream_t stream) {
   const auto count = static_cast<std::uint32_t>(words);
-  if (count > 0) hand_over_kernel<<<blocks_for(count), kThreads, 0, stream>>>(impulses, out, count);
+  if (count > 0) launch_early(hand_over_kernel, blocks_for(count), kThreads, stream, impulses, out, count);
 }
 
 void launch_integrate(const StepConstants& constants, const ParticleKind* kinds, const SortedFluid& fluid,
                       float dt, float max_speed, const ClampView& clamps, const ProbeOutput& probes,
                       const SortView& sort, std::uint32_t* status, cudaStream_t stream) {
-  integrate_kernel<<<blocks_for(fluid.count), kThreads, 0, stream>>>(constants, kinds, fluid, dt, max_speed,
-                                                                     clamps, probes, sort, status);
+  launch_early(integrate_kernel, blocks_for(fluid.count), kThreads, stream, constants, kinds, fluid, dt,
+               max_speed, clamps, probes, sort, status);
 }
 
 }  // namespace slosh::cuda

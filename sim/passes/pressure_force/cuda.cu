@@ -59,6 +59,7 @@ __global__ __launch_bounds__(kThreads, stresses ? kBlocksOfTensors
                                                                        const ParticleKind* kinds,
                                                                        SortedFluid fluid, SortedSurface fixed,
                                                                        SortedSurface moving) {
+  wait_for_last_kernel();
   const std::uint32_t p = Team::particle();
   if (p >= fluid.count) return;
   const std::uint32_t cell = fluid.state.key[p];
@@ -111,8 +112,8 @@ void launch_force(const StepConstants& constants, const Plan& plan, const Partic
       if constexpr (Parts::kCorrected && viscosity != Viscosity::kNone) {
         if (plan.has(PassId::kFluidStress)) kernel = force_kernel<Team, Parts, viscosity, true>;
       }
-      kernel<<<blocks_for(fluid.count * Team::kLanes), kThreads, 0, stream>>>(constants, kinds, fluid, fixed,
-                                                                              moving);
+      launch_early(kernel, blocks_for(fluid.count * Team::kLanes), kThreads, stream, constants, kinds, fluid,
+                   fixed, moving);
     });
   });
 }

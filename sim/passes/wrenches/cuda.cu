@@ -12,6 +12,7 @@ __global__ __launch_bounds__(kThreads) void surface_force_kernel(StepConstants c
                                                                  SortedFluid fluid, SortedSurface surface,
                                                                  const std::uint8_t* wanted,
                                                                  LocalSurface local) {
+  wait_for_last_kernel();
   const std::uint32_t i = Team::particle();
   if (i >= surface.count || !wanted[surface.body[i]]) return;
   const std::uint32_t cell = surface.key[i];
@@ -66,6 +67,7 @@ template <bool with_wrench, bool with_drag>
 __global__ __launch_bounds__(kSumThreads) void sum_kernel(LocalSurface fixed, LocalSurface moving,
                                                           const DeviceBody* bodies, SumPlan plan,
                                                           DeviceWrench* wrenches, BodyDrag* drags) {
+  wait_for_last_kernel();
   constexpr int kFirst = with_wrench ? 0 : SumPlan::kWrench;
   constexpr int kCount = (with_drag ? SumPlan::kAll : SumPlan::kWrench) - kFirst;
   constexpr std::uint32_t kWarps = kSumThreads / 32;
@@ -151,8 +153,8 @@ void launch_surface_forces(const StepConstants& constants, const Plan& plan, flo
   with_physics(plan, [&]<class Parts, Viscosity viscosity>() {
     with_team<kTensorTeams>(surface.count, [&]<class Team>() {
       const auto launch = [&](auto kernel) {
-        kernel<<<blocks_for(surface.count * Team::kLanes), kThreads, 0, stream>>>(
-            constants, first_viscosity, fluid, surface, wanted, local);
+        launch_early(kernel, blocks_for(surface.count * Team::kLanes), kThreads, stream, constants,
+                     first_viscosity, fluid, surface, wanted, local);
       };
       if constexpr (viscosity != Viscosity::kNone) {
         if (with_drag) return launch(surface_force_kernel<Team, Parts, viscosity, true>);
@@ -167,7 +169,7 @@ void launch_sums(const LocalSurface& fixed, const LocalSurface& moving, const De
   const auto kernel = !drags     ? sum_kernel<true, false>
                       : wrenches ? sum_kernel<true, true>
                                  : sum_kernel<false, true>;
-  kernel<<<plan.chunk_count, kSumThreads, 0, stream>>>(fixed, moving, bodies, plan, wrenches, drags);
+  launch_early(kernel, plan.chunk_count, kSumThreads, stream, fixed, moving, bodies, plan, wrenches, drags);
 }
 
 }  // namespace slosh::cuda

@@ -34,7 +34,9 @@ def main():
     source, result = sys.argv[1:]
     with open(source, encoding="utf-8") as file:
         text = file.read()
-    text = re.sub(r"([A-Za-z_]\w*(?:<[^<>;(){}]*>)?)\s*<<<(.*?)>>>\s*\(", launch, text, flags=re.S)
+    kernel = r"([A-Za-z_]\w*(?:<[^<>;(){}]*>)?)"
+    text = re.sub(kernel + r"\s*<<<(.*?)>>>\s*\(", launch, text, flags=re.S)
+    text = re.sub(rf"launch_early\({kernel},(.*?),\s*stream,\s*", launch, text, flags=re.S)
     # Cooperative launches: their arguments by their names, which an array of addresses hides.
     names = re.search(r"void\* arguments\[\] = \{(.*?)\};", text)
     if names:
