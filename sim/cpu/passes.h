@@ -96,7 +96,7 @@ void drag_fluid(PassContext& context, ThreadTeam& team, FluidParticles& fluid,
 
 /// The bodies of the penetration clamp in a sub-step, and what it takes from particles.
 struct WallClamps {
-  std::span<const ClampBody> bodies;
+  const ClampBodies& solids;
   std::span<const glm::dvec3> centers;  ///< m, world, of mass as the sub-step ends, one a body
   std::span<std::int64_t> impulses;     ///< as ImpulseSums; added to
 };

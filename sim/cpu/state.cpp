@@ -24,8 +24,7 @@ CpuState::CpuState(const RunConstants& constants, const ParticleStart& start,
                                [&](int b) { return !bodies[static_cast<std::size_t>(b)].free; });
   fluid.provide(context.plan, start.particles.kind.size());
   scratch.provide(context.plan, start.particles.kind.size());
-  for (const DistanceField& field : fields)
-    views.push_back(field.distance.empty() ? DistanceFieldView{} : field.view());
+  for (const DistanceField& field : fields) clamp_solids.push_back(clamp_solid(field, field.view()));
 }
 
 void CpuState::sum_wrenches(const BodySurface& surface, std::span<Wrench> wrenches,

@@ -41,7 +41,7 @@ struct CpuState {
   std::vector<char> wanted;  // one a body: its wrench is summed
   bool fixed_measured = false;
   std::vector<DistanceField> fields;  // of the bodies that particles are clamped against
-  std::vector<DistanceFieldView> views;
+  std::vector<ClampSolid> clamp_solids;
   ImpulseSums impulses;           // what walls take in this sub-step
   std::vector<Wrench> taken;      // and what they took in the one before, one a body
   std::vector<RigidBody> bodies;  // as the sub-step began

@@ -196,6 +196,7 @@ struct DeviceBody {
 /// A body of the penetration clamp in a sub-step.
 struct DeviceClamp {
   ClampBody body;
+  BoundingSphere sphere;
   glm::dvec3 center{0.0};  ///< of mass as the sub-step ends, m, world
 };
 

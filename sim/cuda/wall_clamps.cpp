@@ -12,11 +12,11 @@ void WallClamps::plan(const RunConstants& constants, const ParticleStart& start,
   fields_.upload(values, check);
   const float* at = fields_.data();
   for (const DistanceField& field : start.clamp_fields) {
-    views_.push_back({field.origin, field.cell, field.size, field.distance.empty() ? nullptr : at});
+    solids_.push_back(clamp_solid(field, {field.origin, field.cell, field.size, at}));
     at += field.distance.size();
   }
-  clamps_.allocate(views_.size(), check);
-  sent_.allocate(views_.size(), check);
+  clamps_.allocate(solids_.size(), check);
+  sent_.allocate(solids_.size(), check);
 }
 
 bool WallClamps::goes_as_sent(std::span<const RigidBody> before, std::span<const RigidBody> after) {
@@ -35,11 +35,11 @@ void WallClamps::send(const Plan& plan, std::span<const RigidBody> before, std::
                       CallCheck& check, cudaStream_t stream) {
   if (clamps_.size() == 0 || check.failed()) return;
   if (goes_as_sent(before, after)) return;
-  place_clamp_bodies(views_, plan, before, after, clamped_);
+  place_clamp_bodies(solids_, plan, before, after, clamped_);
   any_fast_ = false;
-  for (std::size_t b = 0; b < clamped_.size(); ++b) {
-    sent_[b] = {clamped_[b], after[b].position};
-    any_fast_ |= clamped_[b].fast;
+  for (std::size_t b = 0; b < solids_.size(); ++b) {
+    sent_[b] = {clamped_.bodies[b], clamped_.spheres[b], after[b].position};
+    any_fast_ |= clamped_.bodies[b].fast;
   }
   check.ok(cudaMemcpyAsync(clamps_.data(), sent_.data(), clamps_.bytes(), cudaMemcpyHostToDevice, stream),
            "sending walls");

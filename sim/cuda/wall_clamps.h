@@ -44,8 +44,8 @@ class WallClamps {
 
   std::vector<Place> places_;   // before and after, of each
   DeviceBuffer<float> fields_;  // one after the other
-  std::vector<DistanceFieldView> views_;
-  std::vector<ClampBody> clamped_;
+  std::vector<ClampSolid> solids_;
+  ClampBodies clamped_;
   DeviceBuffer<DeviceClamp> clamps_;
   PinnedBuffer<DeviceClamp> sent_;
   bool any_fast_ = false;

@@ -17,29 +17,41 @@ std::vector<DistanceField> clamp_fields(const Scene& scene, const SampledScene& 
   return fields;
 }
 
-void place_clamp_bodies(std::span<const DistanceFieldView> fields, const Plan& plan,
+ClampSolid clamp_solid(const DistanceField& field, const DistanceFieldView& view) {
+  if (field.distance.empty()) return {};
+  const glm::vec3 middle = field.origin + 0.5f * field.cell * glm::vec3(field.size - 1);
+  float farthest = 0.0f;
+  for_each_node(field.view(), [&](float d, const glm::vec3& p, int) {
+    if (d < 0.0f) farthest = std::max(farthest, glm::distance(p, middle));
+  });
+  // Between nodes the field is below 0 only within a cell of one that is.
+  return {view, farthest + std::sqrt(3.0f) * field.cell};
+}
+
+void place_clamp_bodies(std::span<const ClampSolid> solids, const Plan& plan,
                         std::span<const RigidBody> before, std::span<const RigidBody> after,
-                        std::vector<ClampBody>& out) {
-  out.resize(before.size());
+                        ClampBodies& out) {
+  out.bodies.resize(before.size());
+  out.spheres.assign(before.size(), {});
   // Whoever has no particle of a body within the cells around it is this far from its surface at least, less
   // what it goes itself at the speed limit.
   const double near = std::max(0.0, 0.5 * plan.support_radius - (1.0 - kClampDepth) * plan.spacing);
-  for (std::size_t b = 0; b < out.size(); ++b) {
-    ClampBody& g = out[b];
+  for (std::size_t b = 0; b < before.size(); ++b) {
+    ClampBody& g = out.bodies[b];
     g = ClampBody{};
-    if (b >= fields.size() || fields[b].distance == nullptr) continue;
-    g.field = fields[b];
+    if (b >= solids.size() || solids[b].field.distance == nullptr) continue;
+    g.field = solids[b].field;
     g.before = surface_motion(before[b]);
     g.after = surface_motion(after[b]);
     const glm::vec3 half = 0.5f * g.field.cell * glm::vec3(g.field.size - 1);
     const float radius = glm::length(half);
-    g.middle = g.after.place(g.field.origin + half);
+    const glm::vec3 middle = g.after.place(g.field.origin + half);
     const glm::vec3 came = g.before.place(g.field.origin + half);
     const glm::dquat turned = after[b].orientation * glm::conjugate(before[b].orientation);
     const double angle = 2.0 * glm::length(glm::dvec3(turned.x, turned.y, turned.z));
-    const float travel = glm::distance(g.middle, came) + static_cast<float>(angle) * radius;
-    // The field's box has its own margin around the solid.
-    g.reach = radius + travel;
+    const float travel = glm::distance(middle, came) + static_cast<float>(angle) * radius;
+    // Seen from the body, a particle at the edge of all this goes as far again as the turn takes it there.
+    out.spheres[b] = {middle, solids[b].radius + (1.0f + static_cast<float>(angle)) * travel};
     // Where a large body's field is coarse, so is the wall that it knows; but behind the wall's own particles
     // a drop would stay for good.
     const float spacing = static_cast<float>(plan.spacing);

@@ -22,10 +22,22 @@ inline constexpr double kMaxClampDepth = 0.6;
 /// where the plan has no clamp. Fixed bodies that touch have them as one solid (close_joints).
 std::vector<DistanceField> clamp_fields(const Scene& scene, const SampledScene& sampled, const Plan& plan);
 
-/// The bodies on their way from `before` to `after` (one a body each), with the views of `fields`. One entry
-/// a body; those without a field have a reach of 0.
-void place_clamp_bodies(std::span<const DistanceFieldView> fields, const Plan& plan,
+/// A body's solid as long as a world runs.
+struct ClampSolid {
+  DistanceFieldView field;  ///< in the memory of whoever reads it; empty: nobody is clamped
+  float radius = 0.0f;      ///< m, of a ball around the middle of the field's box that holds all of the solid
+};
+/// `field` is here, `view` the same where it will be read.
+ClampSolid clamp_solid(const DistanceField& field, const DistanceFieldView& view);
+
+/// The bodies of a sub-step, one entry a body in both.
+struct ClampBodies {
+  std::vector<ClampBody> bodies;
+  std::vector<BoundingSphere> spheres;
+};
+/// On their way from `before` to `after` (one a body each).
+void place_clamp_bodies(std::span<const ClampSolid> solids, const Plan& plan,
                         std::span<const RigidBody> before, std::span<const RigidBody> after,
-                        std::vector<ClampBody>& out);
+                        ClampBodies& out);
 
 }  // namespace slosh

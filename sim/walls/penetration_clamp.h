@@ -2,6 +2,7 @@
 // itself.
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <glm/glm.hpp>
 
@@ -11,12 +12,22 @@
 
 namespace slosh {
 
+/// A ball in which a body's solid lies all through a sub-step. Most bodies are ruled out by these 16 bytes.
+struct BoundingSphere {
+  glm::vec3 center{1e18f};  ///< m, world; unless set out of everyone's reach
+  float radius = 0.0f;      ///< m
+
+  /// Whether who came to x, over `way` m in the world, can have met the solid.
+  SLOSH_HD bool meets(const glm::vec3& x, float way) const {
+    const glm::vec3 off = x - center;
+    return glm::dot(off, off) <= (radius + way) * (radius + way);
+  }
+};
+
 /// A body's solid and its way through one sub-step.
 struct ClampBody {
   DistanceFieldView field;      ///< in the memory of whoever reads it
   SurfaceMotion before, after;  ///< as the sub-step begins and ends; of `before` only the place counts
-  glm::vec3 middle{0.0f};       ///< of the field's box as the sub-step ends, m, world
-  float reach = 0.0f;           ///< m around `middle` within which a particle can have met the solid
   float depth = 0.0f;           ///< m, how far into the solid a particle may get, > 0
   /// Moves so far in the sub-step that it can meet particles that had none of its own near when that began.
   bool fast = false;
@@ -86,8 +97,6 @@ SLOSH_HD inline bool follow(const DistanceFieldView& field, float depth, const g
 SLOSH_HD inline bool clamp_particle(const ClampBody& body, const glm::vec3& from, glm::vec3& x,
                                     glm::vec3& v) {
   using namespace penetration_clamp;
-  const glm::vec3 off = x - body.middle;
-  if (glm::dot(off, off) > body.reach * body.reach) return false;
   const glm::vec3 begin = glm::transpose(body.before.turn) * (from - body.before.shift);
   glm::vec3 end = glm::transpose(body.after.turn) * (x - body.after.shift);
   // A ball around the end that holds the whole way is clear of the solid: nearly always so.
@@ -119,22 +128,30 @@ SLOSH_HD inline bool clamp_particle(const ClampBody& body, const glm::vec3& from
 }
 
 /// The same against all bodies, again until no way is bent any more: in a corner between two, one sends it to
-/// the other. `body_at(i)` is the i-th. `near`: there were body particles in the cells around it as the
-/// sub-step began; else only fast bodies are looked at. Calls taken(body, from, before) whenever one has bent
-/// it: where (m) and how fast (m/s) it would have been. True when one did.
-template <class BodyAt, class Taken>
-SLOSH_HD inline bool clamp_against_all(BodyAt&& body_at, std::uint32_t count, bool near,
+/// the other. `body_at(i)` is the i-th, `sphere_at(i)` the ball that it lies in. `near`: there were body
+/// particles in the cells around it as the sub-step began; else only fast bodies are looked at. Calls
+/// taken(body, from, before) whenever one has bent it: where (m) and how fast (m/s) it would have been. True
+/// when one did.
+template <class SphereAt, class BodyAt, class Taken>
+SLOSH_HD inline bool clamp_against_all(SphereAt&& sphere_at, BodyAt&& body_at, std::uint32_t count, bool near,
                                        const glm::vec3& from, glm::vec3& x, glm::vec3& v, Taken&& taken) {
   constexpr int kRounds = 3;
   bool any = false;
+  // No shorter than the length, and no root.
+  const auto length_at_most = [](const glm::vec3& d) {
+    return std::abs(d.x) + std::abs(d.y) + std::abs(d.z);
+  };
+  float way = length_at_most(x - from);
   for (int round = 0; round < kRounds; ++round) {
     bool bent = false;
     for (std::uint32_t b = 0; b < count; ++b) {
+      if (!sphere_at(b).meets(x, way)) continue;
       const ClampBody& body = body_at(b);
       if (!near && !body.fast) continue;
       const glm::vec3 to = x, before = v;
       if (!clamp_particle(body, from, x, v)) continue;
       taken(b, to, before);
+      way = length_at_most(x - from);
       bent = true;
     }
     any |= bent;

@@ -36,7 +36,6 @@ struct Solid {
         for (int i = 0; i < f.size.x; ++i) values.push_back(distance(f.origin + f.cell * glm::vec3(i, j, k)));
       }
     }
-    body.reach = 10.0f;
     body.depth = kDepth;
     view();
   }
@@ -58,6 +57,11 @@ Solid box(const glm::vec3& low, const glm::vec3& high) {
 /// A plate with x from 0 to `thickness` spacings.
 Solid plate(float thickness) {
   return box({0.0f, -0.06f, -0.06f}, {thickness * kSpacing, 0.06f, 0.06f});
+}
+
+/// Rules nobody out.
+BoundingSphere everywhere(std::uint32_t) {
+  return {glm::vec3(0.0f), 10.0f};
 }
 
 /// From -1 to 1, the same in each run.
@@ -222,7 +226,7 @@ TEST(PenetrationClamp, joint_of_two_bodies_holds) {
   for (int step = 0; step < 50; ++step) {
     const glm::vec3 from = x;
     x += glm::vec3(0.8f, -0.8f, 0.1f) * kSpacing;
-    clamp_against_all(at, 2, true, from, x, v, [&](std::uint32_t b, auto&&...) { ++taken[b]; });
+    clamp_against_all(everywhere, at, 2, true, from, x, v, [&](std::uint32_t b, auto&&...) { ++taken[b]; });
     ASSERT_LT(x.x, 0.5f * kSpacing);
     ASSERT_GT(x.y, -0.5f * kSpacing);
     x.z = 0.0f;
@@ -240,8 +244,48 @@ TEST(PenetrationClamp, far_particles_meet_fast_bodies_only) {
   for (const bool fast : {false, true}) {
     wall.body.fast = fast;
     glm::vec3 x(kSpacing, 0.0f, 0.0f), v(1.0f, 0.0f, 0.0f);
-    EXPECT_EQ(clamp_against_all(at, 1, false, {-kSpacing, 0.0f, 0.0f}, x, v, [](auto&&...) {}), fast);
+    EXPECT_EQ(clamp_against_all(everywhere, at, 1, false, {-kSpacing, 0.0f, 0.0f}, x, v, [](auto&&...) {}),
+              fast);
   }
+}
+
+// A ball that flies and spins, and particles around it that go up to two spacings.
+TEST(PenetrationClamp, bounding_spheres_rule_out_nobody_who_is_bent) {
+  const float radius = 2.5f * kSpacing;
+  const Solid ball(glm::vec3(-radius), glm::vec3(radius),
+                   [&](const glm::vec3& p) { return glm::length(p) - radius; });
+  const DistanceFieldView& view = ball.body.field;
+  const DistanceField field{view.origin, view.cell, view.size, ball.values};
+  const ClampSolid solid = clamp_solid(field, view);
+  EXPECT_LT(solid.radius, radius + 3.0f * view.cell);
+  Plan plan;
+  plan.spacing = kSpacing;
+  plan.support_radius = 2.0 * kSpacing;
+  Noise noise{11};
+  const auto any = [&] { return glm::vec3(noise(), noise(), noise()); };
+  int bent = 0, ruled_out = 0;
+  for (int n = 0; n < 20000; ++n) {
+    RigidBody before, after;
+    after.position = glm::dvec3(kSpacing * any());
+    after.velocity = after.position / 0.01;
+    after.orientation = glm::angleAxis(0.3 * noise(), glm::normalize(glm::dvec3(any())));
+    ClampBodies placed;
+    place_clamp_bodies({&solid, 1}, plan, {&before, 1}, {&after, 1}, placed);
+    const glm::vec3 from = 6.0f * kSpacing * any(), to = from + 2.0f * kSpacing * any();
+    const auto end = [&](auto&& sphere_at) {
+      glm::vec3 x = to, v = 100.0f * (to - from);
+      clamp_against_all(
+          sphere_at, [&](std::uint32_t) -> const ClampBody& { return placed.bodies[0]; }, 1, true, from, x, v,
+          [](auto&&...) {});
+      return std::pair(x, v);
+    };
+    const auto all = end(everywhere);
+    ASSERT_EQ(end([&](std::uint32_t) { return placed.spheres[0]; }), all) << "particle " << n;
+    bent += all.first != to;
+    ruled_out += !placed.spheres[0].meets(to, glm::distance(from, to));
+  }
+  EXPECT_GT(bent, 200);
+  EXPECT_GT(ruled_out, 2000);
 }
 
 // What a particle loses, in momentum and in angular momentum about any point, is what is written down, in

@@ -23,10 +23,11 @@ bool keep_from_walls(const WallClamps& clamps, const ImpulseUnits& units, float 
   };
   bool past = false;
   const bool bent =
-      clamp_against_all([&](std::uint32_t b) -> const ClampBody& { return clamps.bodies[b]; },
-                        static_cast<std::uint32_t>(clamps.bodies.size()), near, from, x, v,
+      clamp_against_all([&](std::uint32_t b) { return clamps.solids.spheres[b]; },
+                        [&](std::uint32_t b) -> const ClampBody& { return clamps.solids.bodies[b]; },
+                        static_cast<std::uint32_t>(clamps.solids.bodies.size()), near, from, x, v,
                         [&](std::uint32_t b, const glm::vec3& to, const glm::vec3& before) {
-                          past |= glm::distance(to, x) > clamps.bodies[b].depth;
+                          past |= glm::distance(to, x) > clamps.solids.bodies[b].depth;
                           impulse_on_body({mass, to, x, before, v}, clamps.centers[b], units,
                                           [&](int word, std::int64_t value) {
                                             add(kImpulseWords * b + static_cast<std::size_t>(word), value);
@@ -41,9 +42,10 @@ void integrate_fluid(PassContext& context, ThreadTeam& team, FluidParticles& flu
                      double time_step) {
   const float dt = static_cast<float>(time_step);
   const float max_speed = static_cast<float>(speed_limit(context.plan, time_step));
-  const bool any_fast = std::any_of(clamps.bodies.begin(), clamps.bodies.end(),
-                                    [](const ClampBody& body) { return body.fast; });
-  const bool clamped = !clamps.bodies.empty();
+  const std::vector<ClampBody>& bodies = clamps.solids.bodies;
+  const bool any_fast =
+      std::any_of(bodies.begin(), bodies.end(), [](const ClampBody& body) { return body.fast; });
+  const bool clamped = !bodies.empty();
   team.run(fluid.active, kParticlesPerChunk, [&](std::size_t begin, std::size_t end) {
     std::uint32_t status = 0;
     for (std::size_t p = begin; p < end; ++p) {
@@ -84,11 +86,11 @@ void integrate_fluid(PassContext& context, ThreadTeam& team, FluidParticles& flu
 namespace passes {
 
 void integrate_fluid_on_cpu(CpuState& s, const PassInputs& in) {
-  std::vector<ClampBody>& clamped = s.memory<std::vector<ClampBody>>(PassId::kIntegrateFluid);
+  ClampBodies& clamped = s.memory<ClampBodies>(PassId::kIntegrateFluid);
   s.centers.clear();
   for (const RigidBody& body : in.after) s.centers.push_back(body.position);
   if (s.context.plan.clamps_penetration())
-    place_clamp_bodies(s.views, s.context.plan, s.bodies, in.after, clamped);
+    place_clamp_bodies(s.clamp_solids, s.context.plan, s.bodies, in.after, clamped);
   integrate_fluid(s.context, s.team, s.fluid, {clamped, s.centers, s.impulses}, in.dt);
 }
 

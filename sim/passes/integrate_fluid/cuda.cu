@@ -11,10 +11,11 @@ namespace {
 // past the wall's own particles.
 __device__ bool keep_from_walls(const ClampView& clamps, float mass, bool near, const glm::vec3& from,
                                 glm::vec3& x, glm::vec3& v) {
+  const auto sphere = [&](std::uint32_t b) -> const BoundingSphere& { return clamps.bodies[b].sphere; };
   const auto body = [&](std::uint32_t b) -> const ClampBody& { return clamps.bodies[b].body; };
   bool past = false;
   const bool bent =
-      clamp_against_all(body, clamps.count, near, from, x, v,
+      clamp_against_all(sphere, body, clamps.count, near, from, x, v,
                         [&](std::uint32_t b, const glm::vec3& to, const glm::vec3& before) {
                           past |= glm::distance(to, x) > body(b).depth;
                           impulse_on_body({mass, to, x, before, v}, clamps.bodies[b].center, clamps.units,
