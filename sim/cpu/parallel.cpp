@@ -54,7 +54,8 @@ std::uint32_t wait_for_change(const std::atomic<std::uint32_t>& value, std::uint
 
 ThreadTeam::ThreadTeam(int threads) {
   if (threads <= 0) threads = cores_allowed();
-  for (int i = 1; i < threads; ++i) workers_.emplace_back([this] { worker_loop(); });
+  parts_ = std::vector<Part>(static_cast<std::size_t>(threads));
+  for (std::size_t i = 1; i < parts_.size(); ++i) workers_.emplace_back([this, i] { worker_loop(i); });
 }
 
 ThreadTeam::~ThreadTeam() {
@@ -76,11 +77,15 @@ void ThreadTeam::run(std::size_t count, std::size_t chunk,
   body_ = &body;
   count_ = count;
   chunk_ = chunk;
-  next_.store(0, std::memory_order_relaxed);
+  const std::size_t chunks = chunk_count(count, chunk), threads = parts_.size();
+  for (std::size_t i = 0; i < threads; ++i) {
+    parts_[i].next.store(chunks * i / threads, std::memory_order_relaxed);
+    parts_[i].end = chunks * (i + 1) / threads;
+  }
   gate_.store(kOpen, std::memory_order_release);
   generation_.fetch_add(1, std::memory_order_release);
   generation_.notify_all();
-  work_on_chunks();
+  work_on_chunks(0);
   std::uint32_t inside = gate_.fetch_and(~kOpen, std::memory_order_acq_rel) & ~kOpen;
   while (inside != 0) inside = wait_for_change(gate_, inside);
 }
@@ -97,21 +102,24 @@ void ThreadTeam::leave() {
   if (gate_.fetch_sub(1, std::memory_order_acq_rel) == 1) gate_.notify_one();
 }
 
-void ThreadTeam::work_on_chunks() {
-  for (;;) {
-    const std::size_t begin = next_.fetch_add(chunk_, std::memory_order_relaxed);
-    if (begin >= count_) return;
-    (*body_)(begin, std::min(begin + chunk_, count_));
+void ThreadTeam::work_on_chunks(std::size_t thread) {
+  for (std::size_t i = 0; i < parts_.size(); ++i) {
+    Part& part = parts_[(thread + i) % parts_.size()];
+    for (;;) {
+      const std::size_t at = part.next.fetch_add(1, std::memory_order_relaxed);
+      if (at >= part.end) break;
+      (*body_)(at* chunk_, std::min((at + 1) * chunk_, count_));
+    }
   }
 }
 
-void ThreadTeam::worker_loop() {
+void ThreadTeam::worker_loop(std::size_t thread) {
   std::uint32_t seen = 0;
   for (;;) {
     seen = wait_for_change(generation_, seen);
     if (stopping_.load(std::memory_order_relaxed)) return;
     if (!join()) continue;
-    work_on_chunks();
+    work_on_chunks(thread);
     leave();
   }
 }

@@ -15,8 +15,9 @@ constexpr std::size_t chunk_count(std::size_t count, std::size_t chunk) {
   return (count + chunk - 1) / chunk;
 }
 
-/// Runs a body over [0, count) in chunks on all its threads, the caller's included. Chunks are handed out as
-/// threads come free; a body must write only its own indices, so that the result does not depend on who ran
+/// Runs a body over [0, count) in chunks on all its threads, the caller's included. Each takes the same part
+/// of the chunks every time, so that what it wrote in the pass before is in its own cache, then what others
+/// have left; a body must write only its own indices, so that the result does not depend on who ran
 /// what.
 class ThreadTeam {
  public:
@@ -34,14 +35,20 @@ class ThreadTeam {
  private:
   bool join();
   void leave();
-  void work_on_chunks();
-  void worker_loop();
+  void work_on_chunks(std::size_t thread);
+  void worker_loop(std::size_t thread);
+
+  // Chunks of one thread's part, the next of them first.
+  struct alignas(64) Part {
+    std::atomic<std::size_t> next{0};
+    std::size_t end = 0;
+  };
 
   std::vector<std::thread> workers_;
+  std::vector<Part> parts_;  // one a thread, the caller's first
   const std::function<void(std::size_t, std::size_t)>* body_ = nullptr;
   std::size_t count_ = 0;
   std::size_t chunk_ = 1;
-  std::atomic<std::size_t> next_{0};
   std::atomic<std::uint32_t> generation_{0};
   // Open for joining (the top bit), and how many workers are in. A worker that the system has put aside when
   // the work is over never joins, and nobody waits for it.
