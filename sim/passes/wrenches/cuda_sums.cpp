@@ -8,8 +8,8 @@ namespace {
 
 /// Body particles that one block sums, of a body of `count`: so few chunks that their sum costs little.
 std::uint32_t chunk_of(std::uint32_t count) {
-  constexpr std::uint32_t kFewest = 256, kMostChunks = 128;
-  return std::max(kFewest, (count + kMostChunks - 1) / kMostChunks);
+  constexpr std::uint32_t kFewest = 256, kMaxChunks = 128;
+  return std::max(kFewest, (count + kMaxChunks - 1) / kMaxChunks);
 }
 
 }  // namespace
