@@ -108,7 +108,8 @@ void ThreadTeam::work_on_chunks(std::size_t thread) {
     for (;;) {
       const std::size_t at = part.next.fetch_add(1, std::memory_order_relaxed);
       if (at >= part.end) break;
-      (*body_)(at* chunk_, std::min((at + 1) * chunk_, count_));
+      const std::size_t begin = at * chunk_;
+      (*body_)(begin, std::min(begin + chunk_, count_));
     }
   }
 }

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# CUDA against the CPU, for memory errors and races, then what a step costs. Run by `./slosh test gpu`.
+# CUDA against the CPU, for memory errors and races, then what a step costs. Run by `./slosh test --preset gpu`.
 # Usage: run.sh BUILD_FOLDER [PARTICLES...]
 set -uo pipefail
 bin="$1/bin"
@@ -43,7 +43,8 @@ printf '\nA step of a pool at rest\n%-16s %10s %10s %18s %10s\n' model particles
 for model in corrected paper incompressible; do
   # "CUDA, NVIDIA …",model,"at rest",fluid particles,body particles,ms simulated,ms,…
   "$bin/bench_cuda" "$model" cuda "${counts[@]}" |
-    awk -F, -v model="$model" '$2 ~ /NVIDIA/ {printf "%-16s %10d %10.3f %18.3g %9.2fx\n", model, $5, $8, 1000 * $5 / $8, $7 / $8}'
+    awk -F, -v model="$model" '$2 ~ /NVIDIA/ {printf "%-16s %10d %10.3f %18.3g %9.2fx\n", model, $5, $8, 1000 * $5 / $8, $7 / $8}' ||
+    failed=$((failed + 1))
 done
 printf '\n%d passed, %d failed\n' "$passed" "$failed"
 ((failed == 0))

@@ -58,22 +58,13 @@ extern double shuffled[1024], exchanged[2 * 1024];
 /// How many of these the thread has come to.
 unsigned warp_turn();
 
+/// Of the thread `by` further on in the warp, back if below 0; `value` where there is none.
 template <class T>
-T shuffle_down(T value, int by) {
-  const unsigned thread = thread_index.x;
+T shuffle(T value, int by) {
+  const int thread = static_cast<int>(thread_index.x), from = thread % 32 + by;
   shuffled[thread] = value;
   block_barrier();
-  const T other = thread % 32 + by < 32 ? static_cast<T>(shuffled[thread + by]) : value;
-  block_barrier();
-  return other;
-}
-
-template <class T>
-T shuffle_up(T value, int by) {
-  const unsigned thread = thread_index.x;
-  shuffled[thread] = value;
-  block_barrier();
-  const T other = static_cast<int>(thread % 32) >= by ? static_cast<T>(shuffled[thread - by]) : value;
+  const T other = from >= 0 && from < 32 ? static_cast<T>(shuffled[thread + by]) : value;
   block_barrier();
   return other;
 }
@@ -95,8 +86,8 @@ T shuffle_xor(unsigned members, T value, int by) {
 #define blockDim on_cpu::block_size
 #define gridDim on_cpu::grid_size
 #define __syncthreads on_cpu::block_barrier
-#define __shfl_down_sync(mask, value, by) on_cpu::shuffle_down(value, by)
-#define __shfl_up_sync(mask, value, by) on_cpu::shuffle_up(value, by)
+#define __shfl_down_sync(mask, value, by) on_cpu::shuffle(value, by)
+#define __shfl_up_sync(mask, value, by) on_cpu::shuffle(value, -(by))
 #define __shfl_xor_sync(mask, value, by) on_cpu::shuffle_xor(mask, value, by)
 
 template <class T>
