@@ -21,7 +21,7 @@ CudaState::CudaState(const RunConstants& constants_in, const ParticleStart& star
   sums.plan(constants.plan, start, bodies.size(), check);
   clamps.plan(constants, start, bodies.size(), check);
   viscous.plan(constants.plan, start, bodies.size(), sums, check);
-  pressure.plan(constants.plan, start, bodies.size(), sums, check);
+  pressure.plan(constants.plan, start, bodies.size(), fluid.sorted(), sums, check);
   report.plan(sums.bodies().size(), clamps.handed_bytes(), probes.size(), check);
   sent.allocate(bodies.size(), check);
   sent_probes.allocate(probes, check);

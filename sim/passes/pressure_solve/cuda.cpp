@@ -6,15 +6,18 @@
 namespace slosh::cuda {
 
 void PressureSolver::plan(const Plan& plan, const ParticleStart& start, std::size_t body_count,
-                          const WrenchSums& sums, CallCheck& check) {
+                          const SortedFluid& fluid, const WrenchSums& sums, CallCheck& check) {
   if (!plan.has(PassId::kPressureSolve)) return;
   sums_ = &sums;
   check.ok(cudaEventCreateWithFlags(&ready_, cudaEventDisableTiming), "cudaEventCreate");
   if (check.failed()) return;
-  check.ok(most_pressure_blocks(blocks_), "looking how many blocks the pressure projection may have");
-  view_.fluid = static_cast<std::uint32_t>(start.particles.kind.size());
+  view_.fluid = fluid.count;
+  check.ok(most_pressure_blocks(view_.fluid, blocks_),
+           "looking how many blocks the pressure projection may have");
   view_.surface = static_cast<std::uint32_t>(start.moving.size());
-  view_.rows.room = row_room(plan);
+  view_.rows.room = fluid.near.room;
+  view_.presses.room = row_room(plan);
+  view_.touches.room = view_.presses.room / 2;
   view_.bodies = view_.surface ? static_cast<std::uint32_t>(body_count) : 0;
   placed_ = ranges_of(start.moving, body_count);
   allocate_vectors(check);
@@ -33,37 +36,46 @@ void PressureSolver::plan(const Plan& plan, const ParticleStart& start, std::siz
 }
 
 void PressureSolver::allocate_vectors(CallCheck& check) {
-  const std::size_t fluid = view_.fluid, entries = fluid + view_.surface;
-  pairs_.allocate(PairRows::places(entries, view_.rows.room), check);
-  by_other_.allocate(PairRows::places(fluid, view_.rows.room), check);
-  for (DeviceBuffer<std::uint32_t>* buffer : {&counts_, &with_fluid_}) buffer->allocate(entries, check);
+  const std::size_t fluid = view_.fluid, threads = fluid * tensor_lanes(view_.fluid);
+  for (DeviceBuffer<uint4>* buffer : {&by_own_, &by_other_})
+    buffer->allocate(PressRows::places(threads, view_.rows.room), check);
+  heads_.allocate(threads, check);
+  if (view_.surface > 0) {
+    touches_.allocate(PairRows::places(fluid, view_.touches.room), check);
+    touch_counts_.allocate(fluid, check);
+    presses_.allocate(PairRows::places(view_.surface, view_.presses.room), check);
+    press_counts_.allocate(view_.surface, check);
+  }
   for (DeviceBuffer<float4>* buffer : {&own_, &velocity_}) buffer->allocate(fluid, check);
   for (DeviceBuffer<float4>* buffer : {&on_surface_, &turning_}) buffer->allocate(view_.surface, check);
-  for (DeviceBuffer<float>* buffer :
-       {&flow_, &inverse_, &pressure_, &residual_, &product_, &clipped_, &direction_})
+  for (DeviceBuffer<float2>* buffer : {&scale_, &pressing_}) buffer->allocate(fluid, check);
+  for (DeviceBuffer<float>* buffer : {&flow_, &pressure_, &product_, &clipped_, &direction_})
     buffer->allocate(fluid, check);
-  const std::size_t groups = (fluid + kSolveThreads - 1) / kSolveThreads;
-  parts_.allocate(kPressureParts * groups, check);
-  view_.rows.pairs = pairs_.data();
-  view_.rows.counts = counts_.data();
-  view_.with_fluid = with_fluid_.data();
-  view_.by_other = by_other_.data();
+  const std::size_t blocks = static_cast<std::size_t>(blocks_);
+  parts_.allocate(kPressureParts * blocks, check);
+  view_.rows.by_own = by_own_.data();
+  view_.rows.by_other = by_other_.data();
+  view_.rows.heads = heads_.data();
+  view_.touches.pairs = touches_.data();
+  view_.touches.counts = touch_counts_.data();
+  view_.presses.pairs = presses_.data();
+  view_.presses.counts = press_counts_.data();
   view_.own = own_.data();
+  view_.scale = scale_.data();
   view_.velocity = velocity_.data();
   view_.on_surface = on_surface_.data();
   view_.turning = turning_.data();
   view_.flow = flow_.data();
-  view_.inverse = inverse_.data();
   view_.pressure = pressure_.data();
-  view_.residual = residual_.data();
   view_.product = product_.data();
   view_.clipped = clipped_.data();
   view_.direction = direction_.data();
+  view_.pressing = pressing_.data();
   double* at = parts_.data();
   for (double** part : {&view_.parts.step, &view_.parts.turned, &view_.parts.clipped, &view_.parts.squares,
                         &view_.parts.pressing, &view_.parts.curvature}) {
     *part = at;
-    at += groups;
+    at += blocks;
   }
 }
 
@@ -72,8 +84,6 @@ void PressureSolver::push_by_last(const SolveSides& sides, CallCheck& check, cud
   launch_pressure_rows(sides.constants, sides.kinds.data(), sides.fluid, sides.fixed.sorted(),
                        sides.moving.sorted(), view_, stream);
   check.launched("pressure pairs");
-  launch_push_by_last(sides.constants, sides.fluid, sides.moving.sorted(), view_, stream);
-  check.launched("the last pressures");
 }
 
 // The copy before has been made: solve() waits where there are bodies to send.

@@ -18,9 +18,9 @@ class PressureSolver {
   PressureSolver(const PressureSolver&) = delete;
   PressureSolver& operator=(const PressureSolver&) = delete;
 
-  /// Makes room where the plan solves for pressures. `sums` must outlive this.
-  void plan(const Plan& plan, const ParticleStart& start, std::size_t body_count, const WrenchSums& sums,
-            CallCheck& check);
+  /// Makes room where the plan solves for pressures. `fluid`: as allocated. `sums` must outlive this.
+  void plan(const Plan& plan, const ParticleStart& start, std::size_t body_count, const SortedFluid& fluid,
+            const WrenchSums& sums, CallCheck& check);
 
   /// After the force pass: writes the pressure pairs down, and adds what the last step's pressures push by.
   void push_by_last(const SolveSides& sides, CallCheck& check, cudaStream_t stream);
@@ -46,9 +46,12 @@ class PressureSolver {
   std::vector<BodyRange> placed_;  // one a body
   cudaEvent_t ready_ = nullptr;
 
-  DeviceBuffer<float4> pairs_, by_other_, own_, velocity_, on_surface_, turning_;
-  DeviceBuffer<std::uint32_t> counts_, with_fluid_;
-  DeviceBuffer<float> flow_, inverse_, pressure_, residual_, product_, clipped_, direction_;
+  DeviceBuffer<uint4> by_own_, by_other_;
+  DeviceBuffer<uint2> heads_;
+  DeviceBuffer<float4> touches_, presses_, own_, velocity_, on_surface_, turning_;
+  DeviceBuffer<std::uint32_t> touch_counts_, press_counts_;
+  DeviceBuffer<float2> scale_, pressing_;
+  DeviceBuffer<float> flow_, pressure_, product_, clipped_, direction_;
   DeviceBuffer<double> parts_;
   DeviceBuffer<DevicePressedBody> bodies_;
   PinnedBuffer<DevicePressedBody> sent_;

@@ -19,30 +19,64 @@ struct Press {
   PressureView view;
 };
 
-__device__ inline void add(const float3& v, float by, float3& sum) {
-  sum.x += by * v.x;
-  sum.y += by * v.y;
-  sum.z += by * v.z;
+/// Calls f(j, push) for the entries of a thread's row, `entries` of PressRows: four at a time, the next eight
+/// of which are on their way.
+template <class F>
+__device__ inline void for_each_entry(const PressRows& rows, const uint4* entries, std::uint32_t thread,
+                                      const uint2& head, F&& f) {
+  const uint4* at = entries + rows.at(thread);
+  std::uint32_t j = head.x;
+  // Every row has room for eight: nobody waits for the head to read these.
+  uint4 next[2] = {__ldcs(at), __ldcs(at + 32)}, after[2] = {__ldcs(at + 64), __ldcs(at + 96)};
+#pragma unroll 1
+  for (std::uint32_t k = 0; k < head.y; k += kListed) {
+    const uint4 two[2] = {next[0], next[1]};
+    const bool more = k + 2 * kListed < head.y;
+    at += 64;
+    for (std::uint32_t i = 0; i < 2; ++i) {
+      next[i] = after[i];
+      if (more) after[i] = __ldcs(at + 64 + 32 * i);
+    }
+    for (const uint4& e : two) {
+      j += e.y >> 16;
+      f(j, push_in(e.x, e.y));
+      j += e.w >> 16;
+      f(j, push_in(e.z, e.w));
+    }
+  }
 }
 
-/// N on a fluid particle by the direction, as pressures.
-__device__ inline float3 push_on_fluid(const Press& s, std::uint32_t p) {
-  const PressureView& view = s.view;
+/// The pressure, times its unit, that a direction of which so much is kept gives.
+__device__ inline float pressing(const float2& j, float keep) {
+  return j.x + keep * j.y;
+}
+
+/// For those who have more pairs than there is room for.
+template <class Team>
+__device__ __noinline__ float3 walked_push(const Press& s, std::uint32_t p, float keep) {
   float3 sum = make_float3(0.0f, 0.0f, 0.0f);
-  add(vec3(view.own[p]), view.direction[p], sum);
-  if (view.rows.counts[p] > view.rows.room) {
-    for_each_press(s.c, s.fluid, s.moving, p, [&](std::uint32_t j, const float3&, const float3& by_other) {
-      if (j < view.fluid) add(by_other, view.direction[j], sum);
+  for_each_walked<Team>(s.c, s.fluid, p, [&](std::uint32_t j, const PressPair& pair) {
+    add(pair.by_other, pressing(s.view.pressing[j], keep), sum);
+  });
+  return sum;
+}
+
+/// N on a fluid particle by the direction, as pressures, in the team's threads. `own`: PressureView::own.
+template <class Team>
+__device__ inline float3 push_on_fluid(const Press& s, std::uint32_t thread, const float4& own, float keep) {
+  const PressureView& view = s.view;
+  const std::uint32_t p = thread / Team::kLanes;
+  const uint2 head = view.rows.heads[thread];
+  float3 sum = make_float3(0.0f, 0.0f, 0.0f);
+  if (head.y > view.rows.room) {
+    sum = walked_push<Team>(s, p, keep);
+  } else {
+    for_each_entry(view.rows, view.rows.by_other, thread, head, [&](std::uint32_t j, const float3& by_other) {
+      add(by_other, pressing(view.pressing[j], keep), sum);
     });
-    return sum;
   }
-  const float4* pairs = view.by_other + view.rows.at(p, 0);
-  const std::uint32_t count = view.with_fluid[p];
-#pragma unroll 4
-  for (std::uint32_t k = 0; k < count; ++k) {
-    const float4 pair = __ldcs(pairs + std::size_t{32} * k);
-    add(vec3(pair), view.direction[__float_as_uint(pair.w)], sum);
-  }
+  Team::sum(sum.x, sum.y, sum.z);
+  add(vec3(own), pressing(view.pressing[p], keep), sum);
   return sum;
 }
 
@@ -57,25 +91,23 @@ __device__ inline float3 cross(const float3& a, const float3& b) {
   return make_float3(a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x);
 }
 
-/// The same on a particle of a body, to view.on_surface and view.turning.
-__device__ inline void push_on_surface(const Press& s, std::uint32_t e) {
+/// The same on a body's particle i, to view.on_surface and view.turning.
+__device__ __noinline__ inline void push_on_surface(const Press& s, std::uint32_t i, float keep) {
   const PressureView& view = s.view;
-  const std::uint32_t i = e - view.fluid;
   const float4 x = s.moving.x[i];
   float3 force = make_float3(0.0f, 0.0f, 0.0f), couple = force;
   const auto take = [&](std::uint32_t j, const float3& by_own) {
-    const float pressure = view.direction[j];
+    const float pressure = pressing(view.pressing[j], keep);
     const float3 f = make_float3(pressure * by_own.x, pressure * by_own.y, pressure * by_own.z);
     add(f, 1.0f, force);
     add(cross(beyond(s.c, x, s.fluid.pressed[j]), f), 1.0f, couple);
   };
-  const std::uint32_t count = view.rows.counts[e];
-  if (count > view.rows.room) {
-    for_each_press(s.c, s.fluid, s.moving, e,
-                   [&](std::uint32_t j, const float3& by_own, const float3&) { take(j, by_own); });
+  const std::uint32_t count = view.presses.counts[i];
+  if (count > view.presses.room) {
+    for_each_walked_press(s.c, s.fluid, s.moving, i, take);
   } else {
     for (std::uint32_t k = 0; k < count; ++k) {
-      const float4 pair = view.rows.pairs[view.rows.at(e, k)];
+      const float4 pair = view.presses.pairs[view.presses.at(i, k)];
       take(__float_as_uint(pair.w), vec3(pair));
     }
   }
@@ -84,20 +116,16 @@ __device__ inline void push_on_surface(const Press& s, std::uint32_t e) {
   view.turning[at] = make_float4(couple.x, couple.y, couple.z, 0.0f);
 }
 
-/// Calls f(i, on_fluid) for the pairs of fluid particle p with the particles of bodies that may move.
-template <class F>
+/// Calls f(i, on_fluid) for the thread's share of the pairs of fluid particle p with the particles of bodies
+/// that may move.
+template <class Team, class F>
 __device__ inline void for_each_touch(const Press& s, std::uint32_t p, F&& f) {
-  const PressureView& view = s.view;
-  const std::uint32_t count = view.rows.counts[p];
-  if (count > view.rows.room) {
-    for_each_press(s.c, s.fluid, s.moving, p, [&](std::uint32_t j, const float3& by_own, const float3&) {
-      if (j >= view.fluid) f(j - view.fluid, by_own);
-    });
-    return;
-  }
-  for (std::uint32_t k = view.with_fluid[p]; k < count; ++k) {
-    const float4 pair = view.rows.pairs[view.rows.at(p, k)];
-    f(__float_as_uint(pair.w) - view.fluid, vec3(pair));
+  const PairRows& touches = s.view.touches;
+  const std::uint32_t count = touches.counts[p];
+  if (count > touches.room) return for_each_walked_touch<Team>(s.c, s.fluid, s.moving, p, f);
+  for (std::uint32_t k = Team::lane(); k < count; k += Team::kLanes) {
+    const float4 pair = touches.pairs[touches.at(p, k)];
+    f(__float_as_uint(pair.w), vec3(pair));
   }
 }
 
@@ -112,29 +140,46 @@ __device__ inline Vector6 touch(const Press& s, std::uint32_t p, std::uint32_t i
   return {force.x, force.y, force.z, torque.x, torque.y, torque.z};
 }
 
-/// m³/s: the flow out of fluid particle p that there is by `velocity` and the bodies' twists.
-__device__ inline float flow_of(const Press& s, std::uint32_t p) {
-  const PressureView& view = s.view;
-  float flow = dot(vec3(view.own[p]), vec3(view.velocity[p]));
-  if (view.rows.counts[p] > view.rows.room) {
-    for_each_press(s.c, s.fluid, s.moving, p, [&](std::uint32_t j, const float3& by_own, const float3&) {
-      if (j < view.fluid) flow -= dot(by_own, vec3(view.velocity[j]));
-    });
-  } else {
-    const float4* pairs = view.rows.pairs + view.rows.at(p, 0);
-    const std::uint32_t count = view.with_fluid[p];
-#pragma unroll 4
-    for (std::uint32_t k = 0; k < count; ++k) {
-      const float4 pair = __ldcs(pairs + std::size_t{32} * k);
-      flow -= dot(vec3(pair), vec3(view.velocity[__float_as_uint(pair.w)]));
-    }
-  }
-  if (view.bodies == 0) return flow;
-  double by_bodies = 0.0;
-  for_each_touch(s, p, [&](std::uint32_t i, const float3& on_fluid) {
-    by_bodies += dot(touch(s, p, i, on_fluid), view.unknown[s.moving.body[i]].twist);
+/// For those who have more pairs than there is room for.
+template <class Team>
+__device__ __noinline__ float walked_flow(const Press& s, std::uint32_t p) {
+  float flow = 0.0f;
+  for_each_walked<Team>(s.c, s.fluid, p, [&](std::uint32_t j, const PressPair& pair) {
+    flow -= dot(pair.by_own, vec3(s.view.velocity[j]));
   });
-  return flow + static_cast<float>(by_bodies);
+  return flow;
+}
+
+/// m³/s: the flow out of a fluid particle by the bodies' twists, in the team's threads.
+template <class Team>
+__device__ __noinline__ float flow_by_bodies(const Press& s, std::uint32_t p) {
+  double flow = 0.0;
+  for_each_touch<Team>(s, p, [&](std::uint32_t i, const float3& on_fluid) {
+    flow += dot(touch(s, p, i, on_fluid), s.view.unknown[s.moving.body[i]].twist);
+  });
+  Team::sum(flow);
+  return static_cast<float>(flow);
+}
+
+/// m³/s: the flow out of a fluid particle that there is by `velocity` and the bodies' twists, in the team's
+/// threads.
+template <class Team>
+__device__ inline float flow_of(const Press& s, std::uint32_t thread) {
+  const PressureView& view = s.view;
+  const std::uint32_t p = thread / Team::kLanes;
+  const uint2 head = view.rows.heads[thread];
+  float flow = 0.0f;
+  if (head.y > view.rows.room) {
+    flow = walked_flow<Team>(s, p);
+  } else {
+    for_each_entry(view.rows, view.rows.by_own, thread, head, [&](std::uint32_t j, const float3& by_own) {
+      flow -= dot(by_own, vec3(view.velocity[j]));
+    });
+  }
+  Team::sum(flow);
+  const float4 own = view.own[p];
+  flow = own.w * (flow + dot(vec3(own), vec3(view.velocity[p])));
+  return view.bodies == 0 ? flow : flow + flow_by_bodies<Team>(s, p);
 }
 
 /// What the bodies around p add to the system's diagonal, without dt: the pairs with one body together.
@@ -143,7 +188,7 @@ __device__ __noinline__ inline double diagonal_by_bodies(const Press& s, std::ui
   double sum = 0.0;
   for (std::int64_t last = -1;;) {
     std::int64_t body = view.bodies;
-    for_each_touch(s, p, [&](std::uint32_t i, const float3&) {
+    for_each_touch<Alone>(s, p, [&](std::uint32_t i, const float3&) {
       const std::int64_t b = s.moving.body[i];
       if (b > last && b < body) body = b;
     });
@@ -151,7 +196,7 @@ __device__ __noinline__ inline double diagonal_by_bodies(const Press& s, std::ui
     last = body;
     if (!view.body[body].body.moves) continue;
     Vector6 push{};
-    for_each_touch(s, p, [&](std::uint32_t i, const float3& on_fluid) {
+    for_each_touch<Alone>(s, p, [&](std::uint32_t i, const float3& on_fluid) {
       if (s.moving.body[i] != body) return;
       const Vector6 one = touch(s, p, i, on_fluid);
       for (int k = 0; k < 6; ++k) push[k] += one[k];

@@ -7,7 +7,8 @@ import sys
 
 # Those whose threads wait for others of their block, and run as fibers. Waiting in any other ends the program with
 # words. "kernel" is what a kernel is called that is chosen where it is launched.
-WAITING = {"density_kernel", "corrected_density_kernel", "force_kernel", "kernel", "tile_kernel", "cells_kernel"}
+WAITING = {"density_kernel", "corrected_density_kernel", "force_kernel", "kernel", "tile_kernel", "cells_kernel",
+           "press_rows_kernel"}
 
 
 def split(text):
