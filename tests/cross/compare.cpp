@@ -79,36 +79,43 @@ Tank shaken(Tank tank) {
   return tank;
 }
 
-void compare_worlds(const World& cpu, const World& gpu, double tolerance) {
+void compare_worlds(const World& cpu, const World& gpu, const Tolerance& tolerance) {
   const View a(cpu), b(gpu);
-  double apart = 0.0;
+  double apart = 0.0, squares = 0.0;
   bool same_kinds = true;
   for (std::size_t p = 0; p < a.snapshot.positions.size(); ++p) {
     same_kinds &= a.snapshot.fluid_index[p] == b.snapshot.fluid_index[p];
     if (a.snapshot.fluid_index[p] == 255) continue;
-    apart = std::max<double>(apart, glm::distance(a.snapshot.positions[p], b.snapshot.positions[p]));
+    const double d = glm::distance(a.snapshot.positions[p], b.snapshot.positions[p]);
+    apart = std::max(apart, d);
+    squares += d * d;
   }
   expect_true("the same particles in the world", same_kinds && a.sums.particles == b.sums.particles);
-  expect_at_most("largest distance of a particle from itself / spacing", apart / cpu.plan().spacing,
-                 tolerance);
+  const double spacing = cpu.plan().spacing;
+  expect_at_most("largest distance of a particle from itself / spacing", apart / spacing, tolerance.particle);
+  const double particles = std::max<double>(a.sums.particles, 1.0);
+  expect_at_most("its root mean square", std::sqrt(squares / particles) / spacing, tolerance.rest);
   const double speed = std::sqrt(2.0 * a.sums.kinetic_energy / a.sums.mass);
   expect_at_most("momentum / (mass rms speed)",
-                 glm::length(a.sums.momentum - b.sums.momentum) / (a.sums.mass * speed), tolerance);
-  expect_at_most("kinetic energy", std::abs(b.sums.kinetic_energy / a.sums.kinetic_energy - 1.0), tolerance);
-  expect_at_most("largest compression", std::abs(b.sums.max_compression - a.sums.max_compression), tolerance);
+                 glm::length(a.sums.momentum - b.sums.momentum) / (a.sums.mass * speed), tolerance.rest);
+  expect_at_most("kinetic energy", std::abs(b.sums.kinetic_energy / a.sums.kinetic_energy - 1.0),
+                 tolerance.rest);
+  expect_at_most("largest compression", std::abs(b.sums.max_compression - a.sums.max_compression),
+                 tolerance.rest);
   for (std::size_t body = 0; body < a.snapshot.rigid.bodies.size(); ++body) {
     const Wrench& wa = a.snapshot.rigid.bodies[body].fluid;
     const Wrench& wb = b.snapshot.rigid.bodies[body].fluid;
     // Opposite walls cancel: the scale is that of the fluid's weight at least.
     const double scale = std::max(glm::length(wa.force), 9.81 * a.sums.mass);
     expect_at_most("force on a body / weight of the fluid", glm::length(wa.force - wb.force) / scale,
-                   tolerance);
+                   tolerance.rest);
     expect_at_most("torque on a body / (weight 0.1 m)", glm::length(wa.torque - wb.torque) / (0.1 * scale),
-                   tolerance);
+                   tolerance.rest);
   }
 }
 
-void compare_steps(const char* name, const Tank& tank, const Plan& plan, int steps, double tolerance) {
+void compare_steps(const char* name, const Tank& tank, const Plan& plan, int steps,
+                   const Tolerance& tolerance) {
   std::printf("%s, %d step(s)\n", name, steps);
   World cpu = world_on(Backend::kCpu, tank, plan);
   World gpu = world_on(Backend::kCuda, tank, plan);
@@ -141,7 +148,7 @@ void compare_momenta(const Tank& tank, const Plan& plan, int steps, double toler
   expect_true("no solve was cut short", (gpu.take_status() & kStatusViscosityCut) == 0);
 }
 
-void compare_restored(const char* name, const Tank& tank, double hand_height, double tolerance) {
+void compare_restored(const char* name, const Tank& tank, double hand_height, const Tolerance& tolerance) {
   std::printf("%s, saved after 100 steps and restored\n", name);
   World whole = world_on(Backend::kCuda, tank);
   for (int i = 0; i < 100; ++i) step(whole, hand_height);

@@ -28,11 +28,20 @@ struct View {
 /// Squeezed by 3 % and shaken, so that every term of the first step is at work.
 Tank shaken(Tank tank);
 
+/// What two worlds may differ by, each check by its own scale.
+struct Tolerance {
+  double particle;  ///< the one furthest from itself, in spacings
+  double rest;      ///< everything else: particles' root mean square, sums, what bodies feel
+  Tolerance(double all) : particle(all), rest(all) {}
+  Tolerance(double one, double others) : particle(one), rest(others) {}
+};
+
 /// Particle by particle, by their sums, and by what bodies feel.
-void compare_worlds(const World& cpu, const World& gpu, double tolerance);
+void compare_worlds(const World& cpu, const World& gpu, const Tolerance& tolerance);
 /// After one step from the same start the two differ by rounding alone; velocities show in momentum and
 /// energy.
-void compare_steps(const char* name, const Tank& tank, const Plan& plan, int steps, double tolerance);
+void compare_steps(const char* name, const Tank& tank, const Plan& plan, int steps,
+                   const Tolerance& tolerance);
 /// On the GPU, after each step: what the fluid's momentum changed by is what bodies and gravity gave. The
 /// worst step, over weight · dt. No solve may be cut short.
 void compare_momenta(const Tank& tank, const Plan& plan, int steps, double tolerance);
@@ -41,7 +50,8 @@ void repeat(const char* name, const Tank& tank, double hand_height, int steps = 
 
 /// Saved after 100 steps and restored on the GPU, and from one backend to the other, both ways: one step each
 /// to `tolerance`.
-void compare_restored(const char* name, const Tank& tank, double hand_height, double tolerance = 1e-5);
+void compare_restored(const char* name, const Tank& tank, double hand_height,
+                      const Tolerance& tolerance = 1e-5);
 
 /// viscous_worlds.cpp: implicit viscosity; one step of it.
 void compare_viscous();
