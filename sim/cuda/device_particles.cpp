@@ -8,8 +8,10 @@
 namespace slosh::cuda {
 
 StepConstants step_constants(const RunConstants& c) {
-  return {c.grid.sliced(kSlices),
+  const CellGrid grid = c.grid.sliced(kSlices);
+  return {grid,
           c.support_radius,
+          grid.coarse_reach_squared(c.support_radius),
           c.force_scale,
           c.drag_shape,
           c.rest_number_density,
@@ -88,8 +90,9 @@ void FluidBuffers::allocate(std::size_t count, const RunConstants& constants, co
     // A team's rows of cells do not share out evenly.
     const std::uint32_t room = row_room(constants.plan) / lanes / kListed * kListed + (lanes > 1 ? 8 : 0);
     const std::size_t threads = (count * lanes + 127) / 128 * 128;
-    near_.allocate((threads + 32) * room, check);  // what is read ahead of a list's end is nobody's
+    near_.allocate((threads + 32) * room / kListed, check);  // what is read ahead of a list's end is nobody's
     near_counts_.allocate(threads, check);
+    coarse_.allocate(with_nobodies, check);
     view_.near = {room, near_.data(), near_counts_.data()};
   }
   if (needs(constants.plan, ColumnNeed::kSolved)) expansion_.allocate(count, check);
@@ -100,6 +103,7 @@ void FluidBuffers::allocate(std::size_t count, const RunConstants& constants, co
   }
   view_.count = static_cast<std::uint32_t>(count);
   view_.state = view_of(packs_[current_]);
+  view_.coarse = coarse_.data();
   view_.pressed = pressed_.data();
   view_.push_a = push_a_.data();
   view_.push_b = push_b_.data();

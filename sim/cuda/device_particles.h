@@ -75,7 +75,8 @@ class FluidBuffers {
   DeviceBuffer<float4> passed_x_, passed_y_, passed_z_;  // kFluidStress
   DeviceBuffer<float> left_;                             // kFluidStress
   CellStarts starts_;
-  DeviceBuffer<std::uint32_t> near_, near_counts_;
+  DeviceBuffer<std::uint32_t> coarse_, near_counts_;
+  DeviceBuffer<uint4> near_;
   bool some_out_ = false;  // since write(), these are sorted
   SortedFluid view_;
 };

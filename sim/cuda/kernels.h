@@ -23,6 +23,7 @@ namespace slosh::cuda {
 struct StepConstants {
   CellGrid grid;  ///< the world's, sliced
   float support_radius = 0.0f;
+  std::int32_t coarse_reach_squared = 0;  ///< CellGrid's, of that
   float force_scale = 0.0f;
   DragShape<float> drag_shape{1.0f, 0.0f};
   float rest_number_density = 0.0f;
@@ -111,15 +112,15 @@ using DevicePointer = T*;
 /// Fluid particles (and probes) in some order.
 using FluidView = MovingPacks<DevicePointer>;
 
-/// The fluid that each thread of the density pass found in reach, for the force pass's thread of the same
-/// particle. An entry of each of a warp's 32 threads is one run of memory.
+/// The fluid that each thread of the density pass found near, some of it a little out of reach, for the force
+/// pass's thread of the same particle. Four entries of each of a warp's 32 threads are one run of memory.
 struct NearLists {
-  std::uint32_t room = 0;  ///< entries a thread, a multiple of kListed; who has more walks the cells anew
-  std::uint32_t* entries = nullptr;
-  std::uint32_t* counts = nullptr;  ///< found, written down or not
+  std::uint32_t room = 0;    ///< entries a thread, a multiple of kListed; who has more walks the cells anew
+  uint4* entries = nullptr;  ///< kListed each
+  std::uint32_t* counts = nullptr;  ///< entries, a multiple of kListed, written down or not
 
-  SLOSH_HD std::uint32_t* of(std::uint32_t thread) const {
-    return entries + (std::size_t{thread / 32} * room * 32 + thread % 32);
+  SLOSH_HD uint4* of(std::uint32_t thread) const {
+    return entries + (std::size_t{thread / 32} * (room / 4) * 32 + thread % 32);
   }
 };
 /// Entries that are read at a time; lists are filled up to a multiple.
@@ -133,7 +134,8 @@ inline constexpr std::uint32_t kNobodies = 16;
 struct SortedFluid {
   std::uint32_t count = 0;  ///< retired ones, at the end, included
   FluidView state;
-  float4* pressed = nullptr;  ///< position, and in w the pressure (corrects_gradients(): the volume)
+  std::uint32_t* coarse = nullptr;  ///< CellGrid::coarse_of(), from the sort; not of kPaper
+  float4* pressed = nullptr;        ///< position, and in w the pressure (corrects_gradients(): the volume)
   float4* push_a =
       nullptr;  ///< kCorrected: xx, xy, xz, yy of the pressure tensor, N·m⁴; kIncompressible: of 1 Pa's
   float4* push_b = nullptr;    ///< kCorrected: yz, zz of it; x, y of viscosity times velocity, Pa·m

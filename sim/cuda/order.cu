@@ -137,6 +137,9 @@ __global__ void gather_fluid_kernel(StepConstants c, FluidView from, SortView so
       },
       from, to.state);
   to.state.key[place] = key;
+  if (!to.coarse) return;
+  const float4 x = from.x[p];
+  to.coarse[place] = c.grid.coarse_of(x.x, x.y, x.z);
 }
 
 __global__ void place_surface_kernel(StepConstants c, LocalSurface local, const DeviceBody* bodies,

@@ -90,7 +90,7 @@ void with_team(std::uint32_t count, F&& f) {
   f.template operator()<Alone>();
 }
 /// Of the corrected model, whose pairs take more work, and of bodies' particles.
-inline constexpr TeamSizes kTensorTeams{100'000, 0};
+inline constexpr TeamSizes kTensorTeams{60'000, 0};
 inline constexpr TeamSizes kDensityTeams{50'000, 100'000};
 inline constexpr TeamSizes kForceTeams{100'000, 700'000};
 
@@ -128,55 +128,136 @@ __device__ inline void for_neighbors(const CellGrid& grid, const CellTable& cell
   }
 }
 
-/// As for_neighbors() f(j) for those of whom beyond(x[j]) is negative. Four are loaded at a time, of which
-/// the last may be beyond the row (kNobodies): a thread waits for memory once in four. They are marked first:
-/// a warp would do for nearly each candidate what is to be done for one of its threads.
-template <class Team, class Beyond, class F>
-__device__ inline void for_near(const CellGrid& grid, const CellTable& cells, const float4* x,
-                                std::uint32_t cell, Beyond&& beyond, F&& f) {
-  constexpr std::uint32_t kAtOnce = 4, kMarked = 32;
-  RowRange next = row_of(grid, cells, cell, 0);
-#pragma unroll 1
-  for (std::uint32_t n = 0; n < 9; ++n) {
-    const RowRange row = next;
-    if (n < 8) next = row_of(grid, cells, cell, n + 1);  // it comes while this one is looked at
-    for (std::uint32_t base = row.begin + Team::lane(); base < row.end; base += kMarked * Team::kLanes) {
-      const std::uint32_t left = min((row.end - base + Team::kLanes - 1) / Team::kLanes, kMarked);
-      std::uint32_t marks = 0, marked = 0;  // the first is the highest bit
-      const float4* at = x + base;
-#pragma unroll 1
-      for (; marked < left; marked += kAtOnce, at += kAtOnce * Team::kLanes) {
-        float4 y[kAtOnce];
-        for (std::uint32_t i = 0; i < kAtOnce; ++i) y[i] = __ldg(at + i * Team::kLanes);
-        for (std::uint32_t i = 0; i < kAtOnce; ++i)
-          marks = __funnelshift_l(__float_as_uint(beyond(y[i])), marks, 1);
+/// Of a row's particles that may be in reach, the first in the highest bit.
+struct MarkedRow {
+  std::uint32_t marks, first;
+};
+/// As many rows as a thread marks before it looks at them.
+inline constexpr std::uint32_t kMarkedRows = 9;
+
+/// Of the next kListed of a thread's share of a row, in the lowest bits of what `marks` becomes, who may be
+/// in reach of particle p. Who is alone asks CellGrid::coarse_of(), in one load; a team, which waits for
+/// latency rather than for loads to be carried out, the particles themselves: a list is a twelfth shorter
+/// then.
+template <class Team>
+class Near {
+ public:
+  /// Where the share begins.
+  __device__ static std::uint32_t first(const RowRange& row) {
+    return kAlone ? row.begin / kListed * kListed : row.begin + Team::lane();
+  }
+  __device__ Near(const StepConstants& c, const SortedFluid& fluid, std::uint32_t p, const float4& x)
+      : fluid_(fluid), x_(x), h_(c.support_radius), limit_(-c.coarse_reach_squared) {
+    if constexpr (kAlone) own_ = from_ = __ldg(fluid.coarse + p) | kSigns;
+  }
+  /// What comes next is in the n-th row.
+  __device__ void go_to(std::uint32_t n) {
+    // The rows' cells lie one below, beside and one above, 64 units each.
+    if constexpr (kAlone) from_ = own_ + 64u * (1u - n % 3u) + 64u * 256u * (1u - n / 3u);
+  }
+  __device__ std::uint32_t mark(std::uint32_t base, std::uint32_t marks) const {
+    if constexpr (kAlone) {
+      const uint4 y = __ldg(reinterpret_cast<const uint4*>(fluid_.coarse + base));
+      for (const std::uint32_t other : {y.x, y.y, y.z, y.w}) {
+        const auto apart = static_cast<int>((from_ - other) ^ kSigns);
+        marks = __funnelshift_l(static_cast<unsigned>(__dp4a(apart, apart, limit_)), marks, 1);
       }
-      marks &= ~0u << (marked - left);
-      while (marks) {
-        const auto bit = 31u - static_cast<std::uint32_t>(__clz(static_cast<int>(marks)));
-        marks ^= 1u << bit;
-        f(base + (marked - 1 - bit) * Team::kLanes);
+    } else {
+      float4 y[kListed];
+      for (std::uint32_t i = 0; i < kListed; ++i) y[i] = __ldg(fluid_.state.x + base + i * Team::kLanes);
+      for (const float4& other : y) {
+        const float dx = x_.x - other.x, dy = x_.y - other.y, dz = x_.z - other.z;
+        marks = __funnelshift_l(__float_as_uint(dx * dx + (dy * dy + (dz * dz - h_ * h_))), marks, 1);
       }
+    }
+    return marks;
+  }
+
+ private:
+  static constexpr bool kAlone = Team::kLanes == 1;
+  static constexpr std::uint32_t kSigns = 0x8080u;  // what keeps y and z from borrowing
+
+  const SortedFluid& fluid_;
+  float4 x_;
+  float h_;
+  std::int32_t limit_;
+  std::uint32_t own_ = 0, from_ = 0;
+};
+
+/// Calls f(j), j of kListed particles, for the particles around sorted particle p, at x, that may be in
+/// reach, or the thread's share of them as for_neighbors() has it; kNobodies fill up. They are marked first:
+/// a warp would do for nearly each candidate what is to be done for one of its threads. `rows`: kMarkedRows
+/// of the block's threads each, shared.
+template <class Team, class F>
+__device__ inline void for_near(const StepConstants& c, const SortedFluid& fluid, std::uint32_t p,
+                                const float4& x, std::uint32_t cell, MarkedRow (*rows)[kThreads], F&& f) {
+  constexpr std::uint32_t kBits = 32;
+  Near<Team> near(c, fluid, p, x);
+  std::uint32_t n = 0;
+  RowRange row = row_of(c.grid, fluid.cells, cell, 0);
+  std::uint32_t base = near.first(row);
+  while (n < 9) {
+    std::uint32_t marked = 0;
+    while (n < 9 && marked < kMarkedRows) {
+      const RowRange next = row_of(c.grid, fluid.cells, cell, n < 8 ? n + 1 : 8);
+      near.go_to(n);
+      std::uint32_t marks = 0, bits = 0;
+      const std::uint32_t first = base;
+#pragma unroll 1
+      for (; base < row.end && bits < kBits; bits += kListed, base += kListed * Team::kLanes)
+        marks = near.mark(base, marks);
+      if (bits > 0) {
+        marks <<= kBits - bits;
+        const std::uint32_t there = (row.end - first + Team::kLanes - 1) / Team::kLanes;
+        if (there < bits) marks &= ~0u << (kBits - there);
+        if (first < row.begin) marks &= ~0u >> (row.begin - first);
+        if (marks) rows[marked++][threadIdx.x] = {marks, first};
+      }
+      if (base < row.end) continue;
+      ++n;
+      row = next;
+      base = near.first(row);
+    }
+    std::uint32_t marks = 0, first = 0, looked = 0;
+    while (marks || looked < marked) {
+      std::uint32_t j[kListed];
+      for (std::uint32_t& one : j) {
+        if (!marks && looked < marked) {
+          const MarkedRow& of = rows[looked++][threadIdx.x];
+          marks = of.marks;
+          first = of.first;
+        }
+        const auto bit = static_cast<std::uint32_t>(__clz(static_cast<int>(marks)));
+        one = marks ? first + bit * Team::kLanes : fluid.count;
+        marks &= ~(0x80000000u >> bit % kBits);
+      }
+      f(j);
     }
   }
 }
 
 /// Calls f(j) for what the density pass found, or the thread's share of it, in the same order. Calls it for
-/// others, too, who are out of reach: their kernel is 0. `at_once`: f's loads wait together; a divisor of
-/// kListed.
+/// others, too, who are out of reach: their kernel is 0. `at_once`: f's loads wait together, 2 or kListed.
 template <class Team, std::uint32_t at_once = kListed, class F>
 __device__ inline void for_listed(const CellGrid& grid, const SortedFluid& fluid, std::uint32_t cell,
                                   std::uint32_t found, F&& f) {
   if (found > fluid.near.room) return for_neighbors<Team>(grid, fluid.cells, cell, f);
-  const std::uint32_t* entry = fluid.near.of(thread_index());
-  std::uint32_t j[at_once], next[at_once];
-  for (std::uint32_t i = 0; i < at_once; ++i) next[i] = entry[32 * i];
+  const uint4* entry = fluid.near.of(thread_index());
+  uint4 next = *entry;
 #pragma unroll 1
-  for (std::uint32_t k = 0; k < found; k += at_once) {
-    entry += 32 * at_once;
-    for (std::uint32_t i = 0; i < at_once; ++i) j[i] = next[i];
-    for (std::uint32_t i = 0; i < at_once; ++i) next[i] = entry[32 * i];  // they come while f() is at work
-    for (std::uint32_t i = 0; i < at_once; ++i) f(j[i]);
+  for (std::uint32_t k = 0; k < found; k += kListed) {
+    uint4 j = next;
+    entry += 32;
+    next = *entry;  // it comes while f() is at work
+    if constexpr (at_once == kListed) {
+      for (const std::uint32_t one : {j.x, j.y, j.z, j.w}) f(one);
+    } else {
+#pragma unroll 1
+      for (std::uint32_t i = 0; i < kListed; i += 2) {
+        for (const std::uint32_t one : {j.x, j.y}) f(one);
+        j = make_uint4(j.z, j.w, 0, 0);
+      }
+    }
   }
 }
 

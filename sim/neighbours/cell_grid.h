@@ -56,6 +56,24 @@ class CellGrid {
     const glm::uvec3 c = glm::uvec3((p - lower_) * inverse_cell_) + glm::uvec3(slices_, 1, 1);
     return c.x + cells_.x * (c.y + cells_.y * c.z);
   }
+  /// Where in its cell a position is, in bytes that a GPU subtracts four at a time: y and z in 64ths of the
+  /// cell, 0, x in 64ths of a cube modulo four cubes. Lowest byte first.
+  SLOSH_HD std::uint32_t coarse_of(float x, float y, float z) const {
+    const glm::vec3 at = (glm::clamp(glm::vec3(x, y, z), lower_, upper_) - lower_) * inverse_cell_;
+    const auto of_cell = [](float v) {
+      return static_cast<std::uint32_t>(kCoarse * (v - static_cast<float>(static_cast<std::uint32_t>(v))));
+    };
+    const auto along = static_cast<std::uint32_t>(at.x * (kCoarse / static_cast<float>(slices_)));
+    return along << 24 | of_cell(at.z) << 8 | of_cell(at.y);
+  }
+  /// Two that are within `reach` (m) of each other are less than the square root of this apart by
+  /// coarse_of(), which rounds each coordinate down.
+  std::int32_t coarse_reach_squared(float reach) const {
+    const float units = kCoarse * reach * inverse_cell_.y + 1.76f;  // √3, and what floats round
+    return static_cast<std::int32_t>(units * units) + 1;
+  }
+  static constexpr float kCoarse = 64.0f;
+
   SLOSH_HD std::uint32_t cell_count() const { return cells_.x * cells_.y * cells_.z; }
   /// Cells of a line along x, which follow each other.
   SLOSH_HD std::uint32_t line_cells() const { return cells_.x; }

@@ -15,7 +15,7 @@ namespace {
 // The GPU rounds what pairs push by to 16 bits, 1e-4 of a typical push. Where a pressure is at the edge of
 // being cut off, that decides whether it is, and then a few particles around it end far from themselves.
 const Tolerance kOneStep(3e-3, 3e-4);
-const Tolerance kTenSteps(3e-2, 3e-3);
+const Tolerance kTenSteps(3e-2, 1e-2);
 
 // Of 50 and 500 Pa·s one of the two ends implicit viscosity an iteration sooner in the first step, and they
 // end 3e-4 spacings apart; with a thousandth of the drag's tolerance 8e-7, as 40, 45, 55, 60, 70 and 80 Pa·s

@@ -35,6 +35,49 @@ TEST(KeySorter, TakesNothingAndOne) {
   EXPECT_EQ(sorter.order()[0], 0u);
 }
 
+// Places in bytes as the GPU's density pass subtracts them: nobody in reach is missed, in cubes and slices,
+// in cells of the support radius and in larger ones; and a twelfth more than those in reach are taken, not
+// twice.
+TEST(CellGrid, CoarsePlacesMissNobodyInReach) {
+  constexpr float kSupport = 0.1f;
+  std::mt19937 random(11);
+  std::uniform_real_distribution<float> place(-0.8f, 0.8f);
+  for (const double max_cells : {CellGrid::kMaxCells, 1500.0}) {
+    const CellGrid cubes(glm::dvec3(-0.81), glm::dvec3(0.83), kSupport, max_cells);
+    for (const std::uint32_t slices : {1u, 2u, 4u}) {
+      const CellGrid grid = cubes.sliced(slices);
+      const int limit = grid.coarse_reach_squared(kSupport);
+      int in_reach = 0, taken = 0;
+      for (int i = 0; i < 100'000; ++i) {
+        const glm::vec3 a{place(random), place(random), place(random)};
+        const glm::vec3 b = a + 0.2f * glm::vec3(place(random), place(random), place(random));
+        if (!grid.contains(b.x, b.y, b.z)) continue;
+        const std::uint32_t cell = grid.cell_of(b.x, b.y, b.z), around = grid.cell_of(a.x, a.y, a.z);
+        bool near = false;
+        for (std::uint32_t n = 0; n < 9; ++n) {
+          const std::uint32_t first = grid.row_around(around, n);
+          if (cell < first || cell >= first + grid.row_cells()) continue;
+          const std::uint32_t own = grid.coarse_of(a.x, a.y, a.z) | 0x8080u;
+          const std::uint32_t from = own + 64u * (1u - n % 3u) + 64u * 256u * (1u - n / 3u);
+          const std::uint32_t apart = (from - grid.coarse_of(b.x, b.y, b.z)) ^ 0x8080u;
+          int squares = 0;
+          for (int byte = 0; byte < 4; ++byte) {
+            const auto d = static_cast<std::int8_t>(apart >> 8 * byte);
+            squares += d * d;
+          }
+          near = squares < limit;
+        }
+        const bool there = glm::distance(a, b) < kSupport;
+        EXPECT_TRUE(near || !there) << slices << " slices, " << glm::distance(a, b) << " m";
+        in_reach += there;
+        taken += near;
+      }
+      EXPECT_GT(in_reach, 5000);
+      EXPECT_LT(taken, (max_cells > 1e6 ? 1.1 : 1.2) * in_reach) << slices << " slices, at most " << max_cells << " cells";
+    }
+  }
+}
+
 // The rows around a particle's cell must hold every particle within the support radius, and hold each once.
 TEST(CellIndex, RowsHoldEveryNeighborOnce) {
   constexpr double kSupport = 0.1;

@@ -82,34 +82,24 @@ __global__ __launch_bounds__(kThreads, kBlocksOfTensors) void corrected_density_
   const float h = c.support_radius;
   Neighborhood<float> sum{};
   FlowSums<float> flow{};
-  // Of 162 candidates 34 are in reach. Written down first: summed as they are found, a warp would do for
-  // nearly each candidate what one of its threads needs done.
+  __shared__ MarkedRow rows[kMarkedRows][kThreads];
   std::uint32_t found = 0;
-  std::uint32_t* entry = fluid.near.of(thread_index());
-  const auto write_down = [&](std::uint32_t j) {
-    if (found < fluid.near.room) *entry = j;
+  uint4* entry = fluid.near.of(thread_index());
+  for_near<Team>(c, fluid, p, x, cell, rows, [&](const std::uint32_t(&near)[kListed]) {
+    if (found < fluid.near.room) *entry = make_uint4(near[0], near[1], near[2], near[3]);
     entry += 32;
-    ++found;
-  };
-  const auto beyond = [&](const float4& y) {
-    const float dx = x.x - y.x;
-    const float dy = x.y - y.y;
-    const float dz = x.z - y.z;
-    return dx * dx + (dy * dy + (dz * dz - h * h));
-  };
-  for_near<Team>(c.grid, fluid.cells, fluid.state.x, cell, beyond, write_down);
-  const std::uint32_t in_reach = found;
-  while (found % kListed != 0) write_down(fluid.count);  // nobody
-  fluid.near.counts[thread_index()] = in_reach;
-  for_listed<Team>(c.grid, fluid, cell, in_reach, [&](std::uint32_t j) {
-    const float4 y = __ldg(fluid.state.x + j);
-    const float dx = x.x - y.x;
-    const float dy = x.y - y.y;
-    const float dz = x.z - y.z;
-    const float4 v = fluid.state.v[j];
-    add_fluid_neighbor<Kernel>(dx, dy, dz, v.x, v.y, v.z, h, 1.0f, sum);
-    if constexpr (flows) add_flow<Kernel>({dx, dy, dz}, {v.x, v.y, v.z}, h, flow);
+    found += kListed;
+    for (const std::uint32_t j : near) {
+      const float4 y = __ldg(fluid.state.x + j);
+      const float dx = x.x - y.x;
+      const float dy = x.y - y.y;
+      const float dz = x.z - y.z;
+      const float4 v = fluid.state.v[j];
+      add_fluid_neighbor<Kernel>(dx, dy, dz, v.x, v.y, v.z, h, 1.0f, sum);
+      if constexpr (flows) add_flow<Kernel>({dx, dy, dz}, {v.x, v.y, v.z}, h, flow);
+    }
   });
+  fluid.near.counts[thread_index()] = found;
   Symmetric<float> by_fluid = sum.moment;
   float no_slip = 0.0f;  // Σ d² (−W'/r) V of no-slip walls
   const auto add_walls = [&](const SortedSurface& walls) {

@@ -133,6 +133,11 @@ inline int __clz(int bits) {
 inline unsigned __funnelshift_l(unsigned low, unsigned high, unsigned by) {
   return by % 32 == 0 ? high : high << by % 32 | low >> (32 - by % 32);
 }
+inline int __dp4a(int a, int b, int sum) {
+  for (int byte = 0; byte < 4; ++byte)
+    sum += static_cast<std::int8_t>(a >> 8 * byte) * static_cast<std::int8_t>(b >> 8 * byte);
+  return sum;
+}
 template <class T, class U>
 T atomicAdd(T* at, U more) {
   const T before = *at;
