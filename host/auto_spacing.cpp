@@ -57,8 +57,9 @@ std::string sentence(const SpacingChoice& c, double margin) {
 Result<StepTiming> time_steps(const Scene& scene, double spacing, const SpacingOptions& options) {
   Result<SampledScene> sampled = sample_scene(scene, spacing);
   if (!sampled) return sampled.error();
-  Result<World> made = make_world(scene, sampled.value(), make_plan(scene, spacing),
-                                  WorldOptions{options.threads, options.backend});
+  Result<World> made =
+      make_world(scene, sampled.value(), make_plan(scene, spacing),
+                 {.threads = options.threads, .backend = options.backend, .gpu = options.gpu});
   if (!made) return made.error();
   World& world = made.value();
 

@@ -49,6 +49,7 @@ std::vector<SpacingCandidate> spacing_candidates(const Scene& scene);
 struct SpacingOptions {
   int threads = 0;  ///< what the run will use, 0 = all cores
   Backend backend = Backend::kAuto;
+  int gpu = 0;                 ///< of the CUDA backend
   double seconds_each = 0.35;  ///< wall time of measuring at each of two spacings
   /// Told what is being measured; may be empty.
   std::function<void(const std::string&)> tell;

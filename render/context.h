@@ -61,6 +61,9 @@ struct HeadlessOptions {
   /// once per process, so only the first headless context's wish counts. No effect on a GPU. Where other
   /// threads may read the environment, call set_software_threads() with the same number before they start.
   int software_threads = 0;
+  /// The GPU to draw on, from 0 as CUDA counts; where EGL does not tell that, in EGL's order. Below 0: the
+  /// first that gives OpenGL 4.5, else a software renderer.
+  int gpu = -1;
   /// Ask the driver for its debug output; slower on some GPUs.
   bool debug = false;
 };
@@ -74,8 +77,8 @@ void set_software_threads(int threads);
 std::optional<Error> no_headless_gl();
 
 /// A context without display or window, through EGL: surfaceless, else the first EGL device that gives
-/// OpenGL 4.5, else the default display. Errors: no_headless_gl(), no EGL driver, or none
-/// with 4.5 core.
+/// OpenGL 4.5, else the default display. Errors: no_headless_gl(), no EGL driver, none
+/// with 4.5 core, or no such GPU.
 Result<std::unique_ptr<Context>> make_headless_context(const HeadlessOptions& options = {});
 
 /// A window and its context. Width and height in screen coordinates, 1–16384. Errors: no display, no

@@ -97,6 +97,51 @@ struct Candidate {
   const char* name;
 };
 
+EGLDisplay display_of(EGLDeviceEXT device) {
+  return eglGetPlatformDisplayEXT(EGL_PLATFORM_DEVICE_EXT, device, nullptr);
+}
+
+struct Devices {
+  std::vector<EGLDeviceEXT> hardware, software;
+};
+/// What EGL lists; nothing where it lists none.
+Devices find_devices() {
+  const char* client = eglQueryString(EGL_NO_DISPLAY, EGL_EXTENSIONS);
+  Devices found;
+  // EGL_EXT_device_base is what NVIDIA's says alone; the other is half of it.
+  const bool listed =
+      has_word(client, "EGL_EXT_device_base") || has_word(client, "EGL_EXT_device_enumeration");
+  if (listed && has_word(client, "EGL_EXT_platform_base") && has_word(client, "EGL_EXT_platform_device")) {
+    std::array<EGLDeviceEXT, 16> devices{};
+    EGLint count = 0;
+    if (eglQueryDevicesEXT(static_cast<EGLint>(devices.size()), devices.data(), &count)) {
+      for (EGLint i = 0; i < count; ++i) {
+        const bool is_software =
+            has_word(eglQueryDeviceStringEXT(devices[i], EGL_EXTENSIONS), "EGL_MESA_device_software");
+        (is_software ? found.software : found.hardware).push_back(devices[i]);
+      }
+    }
+  }
+  return found;
+}
+
+/// The GPU's number to CUDA; `otherwise` where its driver does not tell.
+EGLAttrib cuda_number(EGLDeviceEXT device, std::size_t otherwise) {
+  EGLAttrib number = 0;
+  const bool told = has_word(eglQueryDeviceStringEXT(device, EGL_EXTENSIONS), "EGL_NV_device_cuda") &&
+                    eglQueryDeviceAttribEXT(device, EGL_CUDA_DEVICE_NV, &number);
+  return told ? number : static_cast<EGLAttrib>(otherwise);
+}
+
+/// The display of GPU `gpu` alone; none where there is no such GPU.
+std::vector<Candidate> display_on(int gpu) {
+  const std::vector<EGLDeviceEXT> hardware = find_devices().hardware;
+  for (std::size_t i = 0; i < hardware.size(); ++i) {
+    if (cuda_number(hardware[i], i) == gpu) return {{display_of(hardware[i]), "EGL device"}};
+  }
+  return {};
+}
+
 /// Displays in the order they are worth trying. EGL devices of GPUs come before Mesa's software device.
 std::vector<Candidate> candidate_displays() {
   std::vector<Candidate> found;
@@ -105,23 +150,9 @@ std::vector<Candidate> candidate_displays() {
     found.push_back({eglGetDisplay(EGL_DEFAULT_DISPLAY), "default display"});
     return found;
   }
-  std::vector<EGLDeviceEXT> hardware;
-  std::vector<EGLDeviceEXT> software;
-  if (has_word(client, "EGL_EXT_platform_device") && has_word(client, "EGL_EXT_device_enumeration")) {
-    std::array<EGLDeviceEXT, 16> devices{};
-    EGLint count = 0;
-    if (eglQueryDevicesEXT(static_cast<EGLint>(devices.size()), devices.data(), &count)) {
-      for (EGLint i = 0; i < count; ++i) {
-        const bool is_software =
-            has_word(eglQueryDeviceStringEXT(devices[i], EGL_EXTENSIONS), "EGL_MESA_device_software");
-        (is_software ? software : hardware).push_back(devices[i]);
-      }
-    }
-  }
+  const auto [hardware, software] = find_devices();
   const auto add_devices = [&](const std::vector<EGLDeviceEXT>& devices, const char* name) {
-    for (EGLDeviceEXT device : devices) {
-      found.push_back({eglGetPlatformDisplayEXT(EGL_PLATFORM_DEVICE_EXT, device, nullptr), name});
-    }
+    for (EGLDeviceEXT device : devices) found.push_back({display_of(device), name});
   };
   // Mesa's surfaceless platform picks a Mesa GPU by itself; another vendor's GPU shows only as a device.
   const bool mesa_surfaceless = has_word(client, "EGL_MESA_platform_surfaceless");
@@ -166,11 +197,15 @@ Result<std::unique_ptr<Context>> make_headless_context(const HeadlessOptions& op
   // llvmpipe reads it when its first screen is made, which the first eglInitialize does.
   if (options.software_threads > 0) set_software_threads(options.software_threads);
   std::string reasons;
-  for (const Candidate& candidate : candidate_displays()) {
+  for (const Candidate& candidate : options.gpu < 0 ? candidate_displays() : display_on(options.gpu)) {
     const EGLContext context = try_display(candidate.display, candidate.name, options.debug, reasons);
     if (context != EGL_NO_CONTEXT)
       return std::unique_ptr<Context>(new EglContext(candidate.display, context));
   }
+  if (options.gpu >= 0)
+    return Error{"headless OpenGL on GPU " + std::to_string(options.gpu),
+                 reasons.empty() ? "EGL lists no such GPU" : reasons,
+                 "Choose one that `nvidia-smi -L` lists, or let the first that draws be taken"};
   return Error{"headless OpenGL", reasons.empty() ? "no EGL display" : reasons, kPackages};
 }
 

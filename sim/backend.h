@@ -24,11 +24,11 @@ struct CudaDevice {
   std::string reason;  ///< why there is none, in words; empty with one
 };
 
-/// Asks the machine for a GPU that this program can run on. Where it was built without CUDA there never is
-/// one.
-CudaDevice find_cuda_device();
+/// Asks the machine for its GPU number `gpu`, from 0 as CUDA counts, and whether this program can run on it.
+/// Where it was built without CUDA there never is one.
+CudaDevice find_cuda_device(int gpu = 0);
 
 /// True where kCuda would work; `reason`, when given, receives why not.
-bool cuda_available(std::string* reason = nullptr);
+bool cuda_available(std::string* reason = nullptr, int gpu = 0);
 
 }  // namespace slosh

@@ -24,8 +24,8 @@ std::optional<Backend> backend_named(std::string_view name) {
   return std::nullopt;
 }
 
-bool cuda_available(std::string* reason) {
-  const CudaDevice device = find_cuda_device();
+bool cuda_available(std::string* reason, int gpu) {
+  const CudaDevice device = find_cuda_device(gpu);
   if (reason) *reason = device.reason;
   return device.available;
 }
@@ -35,9 +35,10 @@ Result<std::unique_ptr<ParticleEngine>> make_particle_engine(const RunConstants&
                                                              std::span<const RigidBody> bodies,
                                                              const WorldOptions& options) {
   if (options.backend != Backend::kCpu) {
-    const CudaDevice device = find_cuda_device();
+    const CudaDevice device = find_cuda_device(options.gpu);
     if (device.available) {
-      Result<std::unique_ptr<ParticleEngine>> engine = make_cuda_engine(constants, start, bodies);
+      Result<std::unique_ptr<ParticleEngine>> engine =
+          make_cuda_engine(constants, start, bodies, options.gpu);
       if (engine || options.backend == Backend::kCuda) return engine;
     } else if (options.backend == Backend::kCuda) {
       return Error{"backend cuda", device.reason,

@@ -52,6 +52,7 @@ struct WorldOptions {
   /// has expanded already (passes/rest_density/rest_density.h). As a lattice it would sag and bounce for 0.2
   /// s.
   bool settled = false;
+  int gpu = 0;  ///< of the CUDA backend, from 0 as CUDA counts
 };
 
 /// Sums over the fluid, for checks and the summary (double precision).

@@ -19,7 +19,8 @@ Result<HostedWorld> start_anew(const HostVerbOptions& options, Progress& progres
   hosted.prepared = std::move(prepared.value());
   const Prepared& p = hosted.prepared;
   progress.phase(p.scene.settle > 0.0 ? "settling" : "starting");
-  Result<World> made = make_world(p.scene, p.sampled, p.plan, WorldOptions{p.threads, p.backend});
+  Result<World> made =
+      make_world(p.scene, p.sampled, p.plan, {.threads = p.threads, .backend = p.backend, .gpu = p.gpu});
   if (!made) return made.error();
   hosted.world = std::move(made.value());
   // The host itself holds every grip where it starts until somebody takes it.
@@ -74,9 +75,10 @@ Result<HostedWorld> carry_on(const HostVerbOptions& options, Progress& progress)
   hosted.place = std::move(kept.place);
 
   Prepared& p = hosted.prepared;
-  const Result<Backend> backend = choose_backend(options.backend);
+  const Result<Backend> backend = choose_backend(options.backend, options.gpu);
   if (!backend) return backend.error();
   p.backend = backend.value();
+  p.gpu = options.gpu;
   p.machine = this_machine();
   p.threads = options.threads > 0 ? options.threads : std::max(1, p.machine.cores - 1);
   p.seconds = options.seconds > 0.0 ? options.seconds : std::numeric_limits<double>::infinity();
@@ -93,8 +95,9 @@ Result<HostedWorld> carry_on(const HostVerbOptions& options, Progress& progress)
   progress.phase("sampling");
   Result<SampledScene> sampled = sample_told(p.scene, kept.spacing, progress);
   if (!sampled) return sampled.error();
-  Result<keep::RebuiltWorld> rebuilt = keep::rebuild_world(p.scene, std::move(sampled.value()), kept.world,
-                                                           WorldOptions{p.threads, p.backend});
+  Result<keep::RebuiltWorld> rebuilt =
+      keep::rebuild_world(p.scene, std::move(sampled.value()), kept.world,
+                          {.threads = p.threads, .backend = p.backend, .gpu = p.gpu});
   if (!rebuilt) return rebuilt.error();
   p.sampled = std::move(rebuilt.value().sampled);
   p.plan = rebuilt.value().world.plan();

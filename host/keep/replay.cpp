@@ -55,7 +55,8 @@ Result<std::unique_ptr<Replayer>> Replayer::open(const std::filesystem::path& fi
   const RecordingHead& head = reader.value()->head();
   const Backend backend = choose(options.backend, head.backend);
   Result<RebuiltWorld> rebuilt =
-      rebuild_world(head.scene, head.spacing, head.world, WorldOptions{options.threads, backend});
+      rebuild_world(head.scene, head.spacing, head.world,
+                    {.threads = options.threads, .backend = backend, .gpu = options.gpu});
   if (!rebuilt) {
     Error error = rebuilt.error();
     error.where = file.string() + ": " + error.where;

@@ -11,6 +11,7 @@ namespace slosh::keep {
 struct ReplayOptions {
   int threads = 0;                   ///< of the CPU backend; 0 = all cores
   Backend backend = Backend::kAuto;  ///< kAuto: the recording's, where it is there, else the CPU
+  int gpu = 0;                       ///< of the CUDA backend
 };
 
 struct ReplayVerdict {

@@ -100,6 +100,10 @@ void add_show_options(CLI::App& verb, ShowOptions& options, bool has_window) {
             return there ? std::string() : "there is no file '" + room + "'";
           },
           ""));
+  verb.add_option(
+          "--render-gpu", options.render_gpu,
+          "GPU that draws the film, as `nvidia-smi -L` lists them; a window is drawn by its display's")
+      ->check(CLI::Range(0, 63));
   verb.add_option("--font-scale", options.font_scale, "Letters of the HUD, times their size")
       ->check(in_range(0.5, 4.0))
       ->capture_default_str();
@@ -191,14 +195,17 @@ void add_export_options(CLI::App& verb, ShowOptions& options) {
       ->needs(what);
 }
 
-void add_backend_option(CLI::App& verb, std::string& backend, const std::string& text) {
+void add_backend_options(CLI::App& verb, std::string& backend, int& gpu, const std::string& text) {
   verb.add_option("--backend", backend, text)
       ->check(CLI::IsMember({"auto", "cpu", "cuda"}))
+      ->capture_default_str();
+  verb.add_option("--sim-gpu", gpu, "GPU that simulates, as `nvidia-smi -L` lists them")
+      ->check(CLI::Range(0, 63))
       ->capture_default_str();
 }
 
 void add_world_options(CLI::App& verb, PlayOptions& options, const std::string& all_cores) {
-  add_backend_option(verb, options.backend, "What the simulation runs on");
+  add_backend_options(verb, options.backend, options.gpu, "What the simulation runs on");
   verb.add_option("--spacing", options.spacing,
                   "Metres between particles, or auto: measures the finest in real time (kept once it was)");
   verb.add_option("--particles", options.particles,

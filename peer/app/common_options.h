@@ -43,7 +43,7 @@ void add_export_options(CLI::App& verb, ShowOptions& options);
 /// what --threads is by default.
 void add_world_options(CLI::App& verb, PlayOptions& options, const std::string& all_cores);
 
-/// --backend alone, with what `auto` means.
-void add_backend_option(CLI::App& verb, std::string& backend, const std::string& text);
+/// --backend, with what `auto` means, and --sim-gpu.
+void add_backend_options(CLI::App& verb, std::string& backend, int& gpu, const std::string& text);
 
 }  // namespace slosh

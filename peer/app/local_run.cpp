@@ -33,7 +33,8 @@ Result<std::unique_ptr<LiveRun>> LocalRun::create(const Prepared& prepared, Devi
     for (const std::string& note : hand_notes(scene, i, *devices.devices[i])) progress.note("slosh: " + note);
   }
   Result<World> made =
-      make_world(scene, prepared.sampled, prepared.plan, WorldOptions{prepared.threads, prepared.backend});
+      make_world(scene, prepared.sampled, prepared.plan,
+                 {.threads = prepared.threads, .backend = prepared.backend, .gpu = prepared.gpu});
   if (!made) return made.error();
   World& world = made.value();
   // Where the scene asks for it the world comes to rest in the hands as they are. Nobody else reads the

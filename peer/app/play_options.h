@@ -32,7 +32,8 @@ struct ShowOptions {
   std::vector<std::string> keys;  ///< of the window: "ACTION=KEY" (KeyBindings::make)
   double font_scale = 1.0;        ///< of the HUD's letters
   bool render = true;
-  bool vr = false;  ///< a headset is asked for
+  int render_gpu = -1;  ///< that draws without a window; -1 = any
+  bool vr = false;      ///< a headset is asked for
   HeadsetWish headset;
   std::shared_ptr<HeadsetLink> controllers;  ///< of the headset that was found; null without one
   std::string plot = "png";                  ///< of plot_formats()
@@ -48,6 +49,7 @@ struct ShowOptions {
 struct PlayOptions : ShowOptions {
   std::string scene = "bucket";
   std::string backend = "auto";  ///< auto, cpu, cuda
+  int gpu = 0;                   ///< that simulates
   std::string spacing;           ///< "", "auto" or metres
   std::size_t particles = 0;     ///< 0 = not asked for
   int threads = 0;               ///< 0 = chosen

@@ -66,6 +66,7 @@ Result<Spacing> choose(const Scene& scene, const PlayOptions& options, std::opti
   SpacingOptions measure;
   measure.threads = threads;
   measure.backend = backend;
+  measure.gpu = options.gpu;
   measure.tell = [&progress](const std::string& text) { progress.update(-1.0, text); };
   const Result<SpacingChoice> choice = measure_spacing(scene, measure);
   if (!choice) return choice.error();
@@ -131,20 +132,27 @@ Result<std::pair<int, int>> parse_size(const std::string& text) {
                "For example 640x480"};
 }
 
-Result<Backend> choose_backend(const std::string& text) {
+Result<Backend> choose_backend(const std::string& text, int gpu_number) {
   const std::optional<Backend> wanted = backend_named(text);
   if (!wanted) return Error{"--backend", "'" + text + "' is unknown", "Choose auto, cpu or cuda"};
   std::string reason;
-  const bool gpu = *wanted != Backend::kCpu && cuda_available(&reason);
+  const bool gpu = *wanted != Backend::kCpu && cuda_available(&reason, gpu_number);
   if (*wanted == Backend::kCuda && !gpu) {
     return Error{"--backend cuda", reason, "Use --backend cpu or auto"};
   }
+  if (gpu_number > 0 && !gpu)
+    return Error{format("--sim-gpu %d", gpu_number),
+                 *wanted == Backend::kCpu ? "the simulation is to run on the CPU" : reason,
+                 "Leave it out, or give --backend cuda and a GPU that `nvidia-smi -L` lists"};
   return gpu ? Backend::kCuda : Backend::kCpu;
 }
 
 Result<bool> set_stage(const ShowOptions& options, bool headless, Stage& stage) {
   stage.row_rate = options.row_rate;
   stage.signals = options.signals;
+  if (options.render_gpu >= 0 && !headless)
+    return Error{"--render-gpu", "is for films: a window is drawn by its display's GPU",
+                 "Give --headless too, or choose the simulation's GPU with --sim-gpu"};
   const Result<std::pair<int, int>> size = parse_size(!options.size.empty() ? options.size
                                                       : headless            ? "640x480"
                                                                             : "1280x720");
@@ -192,7 +200,7 @@ void set_measure(const ShowOptions& options, Stage& stage) {
 
 Result<Prepared> prepare(const PlayOptions& options, bool headless, Progress& progress) {
   Prepared p;
-  const Result<Backend> backend = choose_backend(options.backend);
+  const Result<Backend> backend = choose_backend(options.backend, options.gpu);
   if (!backend) return backend.error();
   const Result<std::optional<double>> asked = asked_spacing(options);
   if (!asked) return asked.error();
@@ -204,6 +212,7 @@ Result<Prepared> prepare(const PlayOptions& options, bool headless, Progress& pr
   }
   if (const Result<bool> recordable = check_record(options.record); !recordable) return recordable.error();
   p.backend = backend.value();
+  p.gpu = options.gpu;
   p.record = options.record;
   p.agreed = options.agreed;
   p.unpaced = options.unpaced;

@@ -37,6 +37,7 @@ struct Prepared : Stage {
   Plan plan;
   std::string spacing_reason;
   Backend backend = Backend::kCpu;  ///< what was chosen; never kAuto
+  int gpu = 0;                      ///< the simulation's, with kCuda
   int threads = 1;                  ///< the simulation's
   bool agreed = false;              ///< it may take as long as it takes
   bool unpaced = false;             ///< the world goes as fast as it can
@@ -47,8 +48,8 @@ struct Prepared : Stage {
 Result<Scene> load_named_scene(const std::string& name_or_path);
 
 /// What `--backend` comes to on this machine: kCpu or kCuda. Errors: another word than auto, cpu, cuda; cuda
-/// where no GPU answers.
-Result<Backend> choose_backend(const std::string& text);
+/// where GPU `gpu` does not answer, or another than the first where it does not.
+Result<Backend> choose_backend(const std::string& text, int gpu);
 
 /// "640x480" to two numbers of pixels, 16–8192 each. Errors: anything else.
 Result<std::pair<int, int>> parse_size(const std::string& text);

@@ -18,6 +18,7 @@ struct ReplayVerbOptions : ShowOptions {
   std::string file;
   std::string backend = "auto";
   int threads = 0;
+  int gpu = 0;
 };
 
 constexpr const char* kReplayFooter =
@@ -44,7 +45,7 @@ int replay(ReplayVerbOptions options) {
   if (options.threads == 0) options.threads = std::max(1, options.render ? cores - 1 : cores);
   progress.phase("opening", options.file);
   Result<std::unique_ptr<keep::Replayer>> opened =
-      keep::Replayer::open(options.file, {options.threads, *backend});
+      keep::Replayer::open(options.file, {options.threads, *backend, options.gpu});
   if (!opened) return fail(opened.error(), progress);
   keep::Replayer& replayer = *opened.value();
 
@@ -76,7 +77,8 @@ void add_replay(CLI::App& app, VerbRun& chosen) {
   add_never_a_window_option(*verb, "No window: a replay has none anyway, its film goes into --out");
   add_out_options(*verb, *o, "Folder for the film, the plot and the tables; without it only compares");
   add_seconds_option(*verb, o->seconds, 0.001, "Simulated seconds from its start (all)");
-  add_backend_option(*verb, o->backend, "What to simulate on; auto: where it was recorded, if that is here");
+  add_backend_options(*verb, o->backend, o->gpu,
+                      "What to simulate on; auto: where it was recorded, if that is here");
   verb->add_option("--threads", o->threads, "Cores for the simulation (all); the result is the same")
       ->check(CLI::Range(1, 1024));
   add_show_options(*verb, *o, false);

@@ -54,6 +54,7 @@ void HeadlessView::run(const Setup& setup) {
 
   HeadlessOptions headless;
   headless.software_threads = kViewSoftwareThreads;
+  headless.gpu = options.gpu;
   Result<std::unique_ptr<Context>> context = make_headless_context(headless);
   if (!context) {
     done();

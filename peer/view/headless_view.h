@@ -21,6 +21,7 @@ struct ViewOptions {
   RenderOptions render;             ///< size, filter iterations
   bool stereo = false;              ///< both eyes side by side, each of that size
   double frames_per_second = 30.0;  ///< of the film
+  int gpu = -1;                     ///< as HeadlessOptions::gpu
   std::filesystem::path folder;     ///< gets view.mp4 and final.png; must exist
 };
 

@@ -35,8 +35,11 @@ CudaPass function_of(PassId id) {
 class CudaEngine final : public ParticleEngine {
  public:
   CudaEngine(const RunConstants& constants, const ParticleStart& start, std::span<const RigidBody> bodies,
-             std::string device)
-      : s_(constants, start, bodies), device_(std::move(device)), kinds_by_id_(start.particles.kind) {
+             std::string device, int gpu)
+      : s_(constants, start, bodies),
+        device_(std::move(device)),
+        gpu_(gpu),
+        kinds_by_id_(start.particles.kind) {
     by_id_.allocate(3 * s_.fluid_count, s_.check);
     kind_by_id_.allocate(s_.fluid_count, s_.check);
     s_.check.ok(cudaDeviceSynchronize(),
@@ -51,6 +54,7 @@ class CudaEngine final : public ParticleEngine {
   }
 
   void begin(std::span<const RigidBody> bodies, double dt) override {
+    use_gpu();
     if (s_.idle()) return;
     s_.clock.begin(s_.check, s_.stream);
     s_.sent.send(bodies, s_.check, s_.stream);
@@ -84,12 +88,14 @@ class CudaEngine final : public ParticleEngine {
   }
 
   void damp(float keep) override {
+    use_gpu();
     if (s_.idle()) return;
     launch_damp(s_.fluid.state().v, s_.fluid.count(), keep, s_.stream);
     s_.check.launched("damping");
   }
 
   void set_constants(const RunConstants& constants) override {
+    use_gpu();
     s_.constants = constants;
     s_.step = step_constants(s_.constants);
     if (s_.check.failed()) return;
@@ -99,6 +105,7 @@ class CudaEngine final : public ParticleEngine {
   void set_correction(const CorrectionConstants& correction) override { s_.step.correction = correction; }
 
   bool save(ParticleState& out, ImpulseSums& impulses) const override {
+    use_gpu();
     const HostPacks packs = fetch_packs(s_.fluid, s_.check, s_.stream);
     impulses = fetch_impulses(s_.clamps, s_.check, s_.stream);
     if (s_.check.failed()) return false;
@@ -108,6 +115,7 @@ class CudaEngine final : public ParticleEngine {
   }
 
   void restore(const ParticleState& state, const ImpulseSums& impulses) override {
+    use_gpu();
     if (s_.check.failed()) return;
     std::vector<std::uint32_t> slots(s_.probes.size());
     for (std::size_t p = 0; p < state.size(); ++p) {
@@ -147,9 +155,13 @@ class CudaEngine final : public ParticleEngine {
     fill_by(slot, positions, fluid_index);
     return s_.check.failed() ? nullptr : slot.particles;
   }
-  Result<bool> share() override { return shared_.start(s_.fluid_count); }
+  Result<bool> share() override {
+    use_gpu();
+    return shared_.start(s_.fluid_count);
+  }
 
   void add_to(Fingerprint& print) const override {
+    use_gpu();
     const HostPacks packs = fetch_packs(s_.fluid, s_.check, s_.stream);
     for_each_present(packs, s_.step.grid, [&](std::size_t p) {
       print.add(packs.id[p]);
@@ -160,6 +172,7 @@ class CudaEngine final : public ParticleEngine {
   }
 
   Diagnostics diagnostics() const override {
+    use_gpu();
     FluidSums sums(s_.constants);
     const HostPacks packs = fetch_packs(s_.fluid, s_.check, s_.stream);
     for_each_present(packs, s_.step.grid, [&](std::size_t p) {
@@ -175,9 +188,13 @@ class CudaEngine final : public ParticleEngine {
   std::string name() const override { return "CUDA, " + device_; }
 
  private:
+  /// CUDA keeps a thread's choice, and who steps the world may not be who made it.
+  void use_gpu() const { s_.check.ok(cudaSetDevice(gpu_), "choosing the GPU"); }
+
   /// By way of a place on the GPU that is its own by the time this returns.
   void fill_by(const SharedSlots::Slot& way, std::span<glm::vec3> positions,
                std::span<std::uint8_t> fluid_index) const {
+    use_gpu();
     std::fill(fluid_index.begin(), fluid_index.end(), std::uint8_t{255});
     if (s_.check.failed() || positions.empty()) return;
     launch_scatter(s_.step, s_.fluid.state(), s_.fluid.count(), static_cast<std::uint32_t>(s_.fluid_count),
@@ -212,6 +229,7 @@ class CudaEngine final : public ParticleEngine {
 
   CudaState s_;
   std::string device_;
+  int gpu_ = 0;
   std::vector<std::uint8_t> kinds_by_id_;
   std::uint32_t status_ = 0;
   std::uint64_t broken_before_ = 0;  // of ParticleState's, those that restore() took over and dropped
@@ -226,10 +244,11 @@ class CudaEngine final : public ParticleEngine {
 
 Result<std::unique_ptr<ParticleEngine>> make_cuda_engine(const RunConstants& constants,
                                                          const ParticleStart& start,
-                                                         std::span<const RigidBody> bodies) {
-  const CudaDevice device = find_cuda_device();
+                                                         std::span<const RigidBody> bodies, int gpu) {
+  const CudaDevice device = find_cuda_device(gpu);
   if (!device.available) return Error{"backend cuda", device.reason, "Use the CPU backend"};
-  auto engine = std::make_unique<cuda::CudaEngine>(constants, start, bodies, device.name);
+  cudaSetDevice(gpu);
+  auto engine = std::make_unique<cuda::CudaEngine>(constants, start, bodies, device.name, gpu);
   if (!engine->failure().empty()) {
     const std::string failure = engine->failure();
     engine.reset();

@@ -8,9 +8,10 @@
 
 namespace slosh {
 
-/// Errors: no GPU, or a CUDA call that failed (not enough memory, for one), in CUDA's words.
+/// On the GPU that `gpu` says (find_cuda_device). Errors: no such GPU, or a CUDA call that failed (not enough
+/// memory, for one), in CUDA's words.
 Result<std::unique_ptr<ParticleEngine>> make_cuda_engine(const RunConstants& constants,
                                                          const ParticleStart& start,
-                                                         std::span<const RigidBody> bodies);
+                                                         std::span<const RigidBody> bodies, int gpu);
 
 }  // namespace slosh

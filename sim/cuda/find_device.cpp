@@ -5,12 +5,13 @@
 
 namespace slosh {
 
-CudaDevice find_cuda_device() {
+CudaDevice find_cuda_device(int gpu) {
   cuda::CallCheck check;
   int count = 0;
   cudaDeviceProp properties{};
-  if (check.ok(cudaGetDeviceCount(&count), "no GPU") && count > 0) {
-    check.ok(cudaGetDeviceProperties(&properties, 0), "cudaGetDeviceProperties");
+  if (check.ok(cudaGetDeviceCount(&count), "no GPU") && gpu >= 0 && gpu < count) {
+    check.ok(cudaGetDeviceProperties(&properties, gpu), "cudaGetDeviceProperties");
+    check.ok(cudaSetDevice(gpu), "choosing the GPU");
     // Runs something: a GPU that this program has no code for is found here.
     cuda::DeviceBuffer<float4> probe;
     probe.allocate(1, check);
@@ -23,6 +24,9 @@ CudaDevice find_cuda_device() {
   cudaGetLastError();  // what was asked here is no one else's error
   if (check.failed()) return {false, "", check.failure()};
   if (count == 0) return {false, "", "no GPU"};
+  if (gpu < 0 || gpu >= count)
+    return {false, "",
+            "there is no GPU " + std::to_string(gpu) + ": the last is GPU " + std::to_string(count - 1)};
   return {true, properties.name, ""};
 }
 

@@ -144,6 +144,9 @@ TEST(Errors, BadCommandLinesPointToHelp) {
 
 TEST(Errors, OptionsThatCannotBeMetSayWhy) {
   expect_error({"play", "--headless", "--backend", "cuda"}, 1, {"CUDA", "--backend cpu"});
+  expect_error({"play", "--headless", "--sim-gpu", "63"}, 1, {"--sim-gpu 63", "nvidia-smi"});
+  expect_error({"play", "--headless", "--sim-gpu", "1", "--backend", "cpu"}, 1, {"--sim-gpu 1", "CPU"});
+  expect_error({"play", "--headless", "--render-gpu", "63", "--seconds", "0.1"}, 1, {"GPU 63", "nvidia-smi"});
   expect_error({"play", "--headless", "--size", "640"}, 1, {"--size", "640x480"});
   expect_error({"play", "--headless", "--spacing", "thin"}, 1, {"--spacing", "thin", "auto"});
   const Arguments quick = {"play", "probe", "--no-render", "--seconds", "0.1", "--spacing", "0.012"};

@@ -34,6 +34,14 @@ TEST(Backend, CudaIsThereOrSaysWhyNot) {
   EXPECT_EQ(device.name.empty(), !there);
 }
 
+TEST(Backend, AGpuThatIsNotThereIsSaid) {
+  for (const int gpu : {-1, 63}) {
+    const CudaDevice device = find_cuda_device(gpu);
+    EXPECT_FALSE(device.available);
+    EXPECT_FALSE(device.reason.empty());
+  }
+}
+
 // Asked for by name, the GPU is used or an error says what to do; it is never quietly the CPU.
 TEST(Backend, AskingForCudaGivesCudaOrAnError) {
   Result<World> world = tank_on(Backend::kCuda);
