@@ -136,7 +136,11 @@ void Host::publish_snapshot() {
   if (options_.snapshot_rate <= 0.0) return;
   if (options_.demand) options_.demand->note_made(run_);
   auto snapshot = std::make_shared<Snapshot>();
-  world_.fill(*snapshot, options_.shell);
+  if (options_.shell) {
+    world_.fill(*snapshot, true);
+  } else {
+    world_.fill_later(*snapshot);
+  }
   snapshot->rigid.status = recent_status();
   if (channel_.snapshots().push(std::move(snapshot))) report_.snapshots += 1;
 }

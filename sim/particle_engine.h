@@ -64,6 +64,12 @@ class ParticleEngine {
     fill(positions, fluid_index);
     return nullptr;
   }
+  /// The same, brought when it is asked for, at any time and on any thread: empty where fill_shared() gives
+  /// null, and `on_gpu` with it.
+  virtual ParticleFetch fill_later(std::shared_ptr<const SharedParticles>& on_gpu) const {
+    on_gpu = nullptr;
+    return {};
+  }
   /// Lets fill_shared() share; false where there is no GPU. Errors: it exports no memory, in words.
   virtual Result<bool> share() { return false; }
   /// The columns that the table says, in the order of the cells at the last sort, which the state itself

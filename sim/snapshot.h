@@ -2,9 +2,12 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <glm/glm.hpp>
 #include <memory>
+#include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "sim/math/pose.h"
@@ -59,6 +62,10 @@ struct BodySnapshot {
   std::vector<GripState> grips;
 };
 
+/// Brings particles from a GPU, on the calling thread, which waits: as Snapshot has them.
+using ParticleFetch =
+    std::function<void(std::span<glm::vec3> positions, std::span<std::uint8_t> fluid_index)>;
+
 /// Everything that is seen: what a viewer needs, at the picture's rate.
 struct Snapshot {
   BodySnapshot rigid;
@@ -69,6 +76,19 @@ struct Snapshot {
   /// Positions and indices once more, in the memory of the GPU that stepped them; null where they are not
   /// shared (World::share_particles), or where all places for that are still looked at.
   std::shared_ptr<const SharedParticles> on_gpu;
+  /// What brings positions and indices, `to_come` of them, where World::fill_later() left them on the GPU;
+  /// else empty.
+  ParticleFetch fetch;
+  std::size_t to_come = 0;
+
+  /// Has them brought, where they are not there yet.
+  void complete() {
+    if (!fetch) return;
+    positions.resize(to_come);
+    fluid_index.resize(to_come);
+    std::exchange(fetch, nullptr)(positions, fluid_index);
+    to_come = 0;
+  }
 };
 
 }  // namespace slosh

@@ -130,6 +130,14 @@ void World::fill(Snapshot& out, bool with_shell) const {
   if (with_shell) find_shell(out.positions, out.fluid_index, impl_->constants.plan.spacing, out.shell);
 }
 
+void World::fill_later(Snapshot& out) const {
+  fill(out.rigid);
+  out.shell.clear();
+  out.fetch = impl_->engine->fill_later(out.on_gpu);
+  if (!out.fetch) return fill(out);
+  out.to_come = impl_->fluid_count;
+}
+
 Result<bool> World::share_particles() {
   return impl_->engine->share();
 }

@@ -114,6 +114,9 @@ class World {
   void fill(BodySnapshot& out) const;
   /// `with_shell` marks what is seen from outside (sim/shell.h); else Snapshot::shell is emptied.
   void fill(Snapshot& out, bool with_shell = false) const;
+  /// The same without a shell, but particles that are on a GPU may stay there until Snapshot::complete(), by
+  /// whichever thread, so that the next step does not wait for them.
+  void fill_later(Snapshot& out) const;
   /// From now on snapshots also say where the GPU that steps the particles has them (Snapshot::on_gpu), for
   /// six of them at a time. False where no GPU steps them. Errors, with everything as it was: its driver
   /// shares nothing.

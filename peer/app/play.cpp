@@ -43,6 +43,7 @@ constexpr const char* kExamples =
     "  slosh play bucket --device script --device mouse\n"
     "  slosh play bucket --vr --device xr-left --device xr-right\n"
     "  slosh play my_scene.glb --spacing 0.008 --threads 4\n"
+    "  slosh play pool --particles 1e6 --headless --sim-gpu 0 --render-gpu 1\n"
     "  slosh play bucket --headless --device replay:out/bucket/poses.csv";
 
 int play(PlayOptions options) {

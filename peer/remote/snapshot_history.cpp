@@ -65,7 +65,7 @@ BodySnapshot blend(const BodySnapshot& a, const BodySnapshot& b, double time) {
   return out;
 }
 
-SnapshotPointer blend(const Between& between) {
+std::shared_ptr<Snapshot> blend(const Between& between) {
   auto snapshot = std::make_shared<Snapshot>();
   snapshot->rigid = between.rigid;
   if (!between.before) return snapshot;

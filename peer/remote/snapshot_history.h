@@ -24,7 +24,7 @@ struct Between {
 
 /// Particles move in straight lines between the two frames. One that has left the world in either is not
 /// drawn.
-SnapshotPointer blend(const Between& between);
+std::shared_ptr<Snapshot> blend(const Between& between);
 
 /// Bodies and grips at `time`, between a.time and b.time: positions, velocities and forces along straight
 /// lines, turns by the shorter way at an even speed.

@@ -32,6 +32,30 @@ CudaPass function_of(PassId id) {
   }
 }
 
+/// An event that outlives the engine, for who waits for it later.
+class OwnedEvent {
+ public:
+  OwnedEvent() = default;
+  OwnedEvent(const OwnedEvent&) = delete;
+  OwnedEvent& operator=(const OwnedEvent&) = delete;
+  ~OwnedEvent() {
+    if (event_) cudaEventDestroy(event_);
+  }
+  /// False after a failure.
+  bool record(CallCheck& check, cudaStream_t stream) {
+    if (!check.failed())
+      check.ok(cudaEventCreateWithFlags(&event_, cudaEventDisableTiming), "cudaEventCreate");
+    if (!check.failed()) check.ok(cudaEventRecord(event_, stream), "cudaEventRecord");
+    return !check.failed();
+  }
+  void wait(CallCheck& check) const {
+    if (!check.failed()) check.ok(cudaEventSynchronize(event_), "waiting for the picture's particles");
+  }
+
+ private:
+  cudaEvent_t event_ = nullptr;
+};
+
 class CudaEngine final : public ParticleEngine {
  public:
   CudaEngine(const RunConstants& constants, const ParticleStart& start, std::span<const RigidBody> bodies,
@@ -155,6 +179,25 @@ class CudaEngine final : public ParticleEngine {
     fill_by(slot, positions, fluid_index);
     return s_.check.failed() ? nullptr : slot.particles;
   }
+  ParticleFetch fill_later(std::shared_ptr<const SharedParticles>& on_gpu) const override {
+    const SharedSlots::Slot slot = shared_.take();
+    on_gpu = slot.particles;
+    if (!slot.particles || s_.fluid_count == 0) return {};
+    use_gpu();
+    scatter_to(slot);
+    auto scattered = std::make_shared<OwnedEvent>();
+    if (!scattered->record(s_.check, s_.stream)) return {};
+    return
+        [slot, scattered, gpu = gpu_](std::span<glm::vec3> positions, std::span<std::uint8_t> fluid_index) {
+          CallCheck check;
+          check.ok(cudaSetDevice(gpu), "choosing the GPU");
+          scattered->wait(check);
+          fetch(slot.positions, reinterpret_cast<float*>(positions.data()), 3 * positions.size(), check,
+                cudaStreamPerThread);
+          fetch(slot.kinds, fluid_index.data(), fluid_index.size(), check, cudaStreamPerThread);
+          if (check.failed()) std::fill(fluid_index.begin(), fluid_index.end(), std::uint8_t{255});
+        };
+  }
   Result<bool> share() override {
     use_gpu();
     return shared_.start(s_.fluid_count);
@@ -191,15 +234,19 @@ class CudaEngine final : public ParticleEngine {
   /// CUDA keeps a thread's choice, and who steps the world may not be who made it.
   void use_gpu() const { s_.check.ok(cudaSetDevice(gpu_), "choosing the GPU"); }
 
+  void scatter_to(const SharedSlots::Slot& way) const {
+    if (s_.check.failed()) return;
+    launch_scatter(s_.step, s_.fluid.state(), s_.fluid.count(), static_cast<std::uint32_t>(s_.fluid_count),
+                   way.positions, way.kinds, s_.stream);
+    s_.check.launched("scattering");
+  }
   /// By way of a place on the GPU that is its own by the time this returns.
   void fill_by(const SharedSlots::Slot& way, std::span<glm::vec3> positions,
                std::span<std::uint8_t> fluid_index) const {
     use_gpu();
     std::fill(fluid_index.begin(), fluid_index.end(), std::uint8_t{255});
     if (s_.check.failed() || positions.empty()) return;
-    launch_scatter(s_.step, s_.fluid.state(), s_.fluid.count(), static_cast<std::uint32_t>(s_.fluid_count),
-                   way.positions, way.kinds, s_.stream);
-    s_.check.launched("scattering");
+    scatter_to(way);
     fetch(way.positions, reinterpret_cast<float*>(positions.data()), 3 * positions.size(), s_.check,
           s_.stream);
     fetch(way.kinds, fluid_index.data(), fluid_index.size(), s_.check, s_.stream);

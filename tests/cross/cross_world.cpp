@@ -8,6 +8,7 @@
 #include <limits>
 #include <optional>
 #include <string>
+#include <thread>
 
 #include "tests/cross/compare.h"
 #include "tests/lab/report/surface.h"
@@ -39,6 +40,24 @@ void compare_changed() {
   step(cpu, 0.09);
   step(gpu, 0.09);
   compare_worlds(cpu, gpu, 1e-4);
+}
+
+// Left on the GPU, brought ten steps later by another thread, when the world is gone.
+void compare_later() {
+  std::printf("a snapshot brought later\n");
+  std::optional<World> world = world_on(Backend::kCuda, shaken(stirred_tank(ParticleModel::kCorrected)));
+  const Result<bool> shared = world->share_particles();
+  const bool shares = shared && shared.value();
+  if (!shares) std::printf("  this driver shares nothing: it is brought at once\n");
+  step(*world, 0.09);
+  Snapshot now, later;
+  world->fill(now);
+  world->fill_later(later);
+  expect_true("its particles stay behind where the driver shares", shares == later.positions.empty());
+  for (int i = 0; i < 10; ++i) step(*world, 0.09);
+  world.reset();
+  std::thread([&] { later.complete(); }).join();
+  expect_true("the same particles", now.positions == later.positions && now.fluid_index == later.fluid_index);
 }
 
 struct Mean {
@@ -261,6 +280,7 @@ int main(int argc, char** argv) {
   compare_restored("two fluids, paddle", stirred_tank(ParticleModel::kCorrected), 0.09);
   compare_restored("probe", probed_tank(), 0.05);
   compare_changed();
+  compare_later();
   compare_retired();
   compare_squeezed();
   compare_clamped();

@@ -7,7 +7,7 @@
 namespace slosh {
 namespace {
 
-SnapshotPointer snapshot_of(std::size_t particles, double time = 0.0) {
+std::shared_ptr<Snapshot> snapshot_of(std::size_t particles, double time = 0.0) {
   auto snapshot = std::make_shared<Snapshot>();
   snapshot->positions.resize(particles);
   snapshot->rigid.time = time;
@@ -37,6 +37,35 @@ TEST(SnapshotQueue, ASnapshotLargerThanTheBoundStillGetsThroughAlone) {
   SnapshotQueue queue(10);
   EXPECT_TRUE(queue.push(snapshot_of(1000)));
   EXPECT_FALSE(queue.push(snapshot_of(1)));
+}
+
+// As World::fill_later() leaves one: who takes it gets it whole, and it counts for the bound as if it were.
+TEST(SnapshotQueue, WhoTakesASnapshotHasItsParticlesBrought) {
+  const std::size_t one = size_in_bytes(*snapshot_of(1000));
+  SnapshotQueue queue(3 * one);
+  int brought = 0;
+  const auto left_behind = [&brought](float x) {
+    auto snapshot = std::make_shared<Snapshot>();
+    snapshot->to_come = 1000;
+    snapshot->fetch = [&brought, x](std::span<glm::vec3> positions, std::span<std::uint8_t> fluid_index) {
+      std::fill(positions.begin(), positions.end(), glm::vec3(x));
+      std::fill(fluid_index.begin(), fluid_index.end(), std::uint8_t{7});
+      ++brought;
+    };
+    return snapshot;
+  };
+  EXPECT_TRUE(queue.push(left_behind(1.0f)));
+  EXPECT_TRUE(queue.push(left_behind(2.0f)));
+  EXPECT_FALSE(queue.push(left_behind(3.0f)) && queue.push(left_behind(3.0f)));
+  const SnapshotPointer first = queue.pop(std::chrono::milliseconds(0));
+  ASSERT_EQ(first->positions.size(), 1000u);
+  ASSERT_EQ(first->fluid_index.size(), 1000u);
+  EXPECT_EQ(first->positions.back(), glm::vec3(1.0f));
+  EXPECT_EQ(first->fluid_index.back(), 7);
+  EXPECT_EQ(first->to_come, 0u);
+  EXPECT_EQ(queue.pop_newest()->positions.size(), 1000u);
+  EXPECT_EQ(queue.waiting(), 0u);
+  EXPECT_EQ(brought, 2) << "those thrown away stay where they are";
 }
 
 TEST(SnapshotQueue, NewestThrowsTheOthersAway) {
