@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "render/passes/frame_block.h"
+#include "render/renderer.h"
 #include "render/shader_math.h"
 #include "tests/lab/picture/reference/fluid_mesh.h"
 #include "tests/lab/picture/reference/focused_light.h"
@@ -77,6 +78,28 @@ class PathTracing : public ::testing::Test {
   }
   std::unique_ptr<reference::PathTracer> tracer_;
 };
+
+TEST_F(PathTracing, ABallIsSeenFirstAsLargeAndAsRoundAsItIs) {
+  constexpr int kSide = 200;
+  constexpr float kRadius = 0.1f;
+  const std::vector<glm::vec3> points{{0.0f, 0.0f, 0.0f}};
+  const std::vector<std::uint8_t> fluids{0};
+  const Frame frame = frame_of(points, fluids, kRadius, kSide, kSide);
+  reference::Options options;
+  options.width = options.height = kSide;
+  options.cell = 0.1f;
+  const score::Exact seen = tracer_->first_seen(frame, options);
+  // The eye is 1 m away: the outline is that of the cone that touches the ball.
+  const float touches = kRadius / std::sqrt(1.0f - kRadius * kRadius);
+  const float radius = 0.5f * kSide * frame.view.projection[1][1] * touches;
+  const auto pixels =
+      std::ranges::count_if(seen.depth.values, [](float d) { return d < 0.5f * kNoFluidDepth; });
+  EXPECT_NEAR(static_cast<double>(pixels), M_PI * radius * radius, 0.05 * M_PI * radius * radius);
+  EXPECT_NEAR(seen.depth.at(kSide / 2, kSide / 2), 1.0f - kRadius, 0.004f);
+  EXPECT_GT(seen.normal.at(kSide / 2, kSide / 2, 2), 0.99f);
+  const int right = kSide / 2 + static_cast<int>(0.8f * radius);
+  EXPECT_NEAR(seen.normal.at(right, kSide / 2, 0), 0.8f, 0.06f);
+}
 
 TEST_F(PathTracing, AnEmptyFrameIsTheRoom) {
   Frame frame = frame_of({}, {}, 0.01f, 24, 18);

@@ -8,6 +8,7 @@
 #include "render/passes/narrow_range_on_cpu.h"
 #include "render/passes/smooth_centers.h"
 #include "render/shader_math.h"
+#include "tests/lab/picture/score/shape.h"
 #include "tests/render/render_test.h"
 
 namespace slosh {
@@ -88,6 +89,42 @@ TEST_F(ScoreTest, TheExactPictureScoresNought) {
   const score::SurfaceScore off = score::score_surface(exact.depth, turned, exact, 0.01f, 0.03f);
   EXPECT_GT(off.normal_mean, 4.0);
   EXPECT_LT(off.normal_mean, 11.46) << "0.2 rad about the view, so less for normals that face the eye";
+}
+
+/// Discs of fluid that face the eye, each x, y and radius in pixels.
+score::Exact discs(const std::vector<glm::vec3>& all) {
+  constexpr int kSide = 100;
+  score::Exact exact{{kSide, kSide, 1, std::vector<float>(kSide * kSide, kNoFluidDepth)},
+                     {kSide, kSide, 3, std::vector<float>(3 * kSide * kSide, 0.0f)}};
+  for (int i = 0; i < kSide * kSide; ++i) {
+    for (const glm::vec3& disc : all) {
+      if (glm::distance(glm::vec2(i % kSide, i / kSide), glm::vec2(disc)) > disc.z) continue;
+      exact.depth.values[static_cast<std::size_t>(i)] = 1.0f;
+      exact.normal.values[static_cast<std::size_t>(3 * i + 2)] = 1.0f;
+    }
+  }
+  return exact;
+}
+
+TEST(Shape, OfDiscsIsKnown) {
+  const score::Exact right = discs({{25, 50, 20}, {75, 50, 20}});
+  const score::ShapeScore same = score::score_shape(right, right);
+  EXPECT_EQ(same.overlap, 1.0);
+  EXPECT_EQ(same.area, 1.0);
+  EXPECT_EQ(same.pieces, 2);
+  EXPECT_EQ(same.right_pieces, 2);
+  EXPECT_LT(same.normal_mean, 0.1);
+  // The one is in the other, which has twice its area.
+  const float wider = 20.0f * std::sqrt(2.0f);
+  const score::ShapeScore one =
+      score::score_shape(discs({{50, 50, wider}}), discs({{50, 50, 20}, {5, 5, 1}}));
+  EXPECT_NEAR(one.overlap, 0.5, 0.02);
+  EXPECT_NEAR(one.area, 2.0, 0.02);
+  EXPECT_EQ(one.pieces, 1);
+  EXPECT_EQ(one.right_pieces, 1) << "five pixels are no piece";
+  const score::ShapeScore none = score::score_shape(discs({}), right);
+  EXPECT_EQ(none.overlap, 0.0);
+  EXPECT_EQ(none.pieces, 0);
 }
 
 TEST(Flicker, IsTheMeanChangeOfAChannel) {

@@ -95,7 +95,7 @@ void add_report(CLI::App& app, VerbRun& chosen) {
   stability->callback([&chosen, options] { chosen = [options] { return report_stability(*options); }; });
   CLI::App* picture = verb->add_subcommand(
       "picture", "Ways to make a surface of particles: how wrong, how restless, how long");
-  picture->add_flag("--quick", options->quick, "Coarser particles and smaller pools: a minute");
+  picture->add_flag("--quick", options->quick, "Coarser particles and smaller pools: two minutes");
   picture->add_option("--out", options->out, "Folder for the table and pictures (slosh-report-picture)");
   picture->add_option("--threads", options->threads, "Cores for a renderer without a GPU (1)")
       ->check(CLI::Range(1, 256));
@@ -103,7 +103,11 @@ void add_report(CLI::App& app, VerbRun& chosen) {
   picture->footer(
       "Draws an analytic pool, water at rest and a broken dam with the paper's section 5, with curvature "
       "flow and\n"
-      "as play does. Writes picture.md, the table, and picture.png, the broken dam side by side.\n\n"
+      "as play does. Then as play does what is outside of a vessel: a stream, a sheet, a string of batter, a "
+      "puddle,\n"
+      "a film, drops, each beside the same simulated finely and seen by ray. Writes picture.md, the tables, "
+      "picture.png,\n"
+      "the broken dam side by side, and shapes.png.\n\n"
       "Examples:\n  slosh report picture\n  slosh report picture --quick --out here");
   picture->callback([&chosen, options] { chosen = [options] { return report_picture(*options); }; });
   CLI::App* coupling = verb->add_subcommand("coupling", "Hands at several sites on one body, over a delay");

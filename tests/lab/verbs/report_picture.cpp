@@ -7,12 +7,11 @@
 #include <optional>
 #include <tuple>
 
-#include "peer/output/whole_file.h"
 #include "peer/app/interrupt.h"
 #include "peer/app/verbs.h"
+#include "peer/output/whole_file.h"
 #include "peer/view/frame_builder.h"
 #include "peer/view/orbit_camera.h"
-#include "render/color/display_transform.h"
 #include "render/context.h"
 #include "render/renderer.h"
 #include "sim/math/format.h"
@@ -21,6 +20,7 @@
 #include "tests/lab/report/scene_builder.h"
 #include "tests/lab/report/trial.h"
 #include "tests/lab/verbs/report.h"
+#include "tests/lab/verbs/report_picture_shapes.h"
 #include "tests/lab/verbs/report_picture_stand.h"
 #include "tests/lab/verbs/report_picture_water.h"
 
@@ -29,6 +29,7 @@ namespace {
 
 constexpr const char* kPictureTable = "picture.md";
 constexpr const char* kSheet = "picture.png";
+constexpr const char* kShapes = "shapes.png";
 struct Method {
   const char* name;
   Surface surface;
@@ -106,18 +107,7 @@ Result<Image> reference_picture(const Scene& scene, double spacing, const Snapsh
   options.samples = samples;
   options.threads = threads;
   const FloatImage light = tracer.value()->draw(frame, options);
-  std::vector<glm::vec3> linear(light.values.size() / 3);
-  for (std::size_t i = 0; i < linear.size(); ++i)
-    linear[i] = {light.values[3 * i], light.values[3 * i + 1], light.values[3 * i + 2]};
-  const auto shown = display_colors(Display::kAces, linear);
-  if (!shown) return shown.error();
-  Image image{kReportWidth, kReportHeight, {}};
-  for (const glm::vec3& color : shown.value()) {
-    for (int c = 0; c < 3; ++c)
-      image.rgba.push_back(static_cast<std::uint8_t>(std::lround(255.0f * color[c])));
-    image.rgba.push_back(255);
-  }
-  return image;
+  return shown_image(light);
 }
 
 /// Pictures of one height beside each other.
@@ -187,6 +177,7 @@ int report_picture(const ReportOptions& options) {
   double reference_seconds = 0.0;
   std::string no_reference;
   BucketTimes bucket;
+  std::optional<Result<ShapeStudy>> shapes;
   std::size_t particles = 0;
   try {
     const Scene dam_scene = tank_scene(true).scene;
@@ -244,6 +235,8 @@ int report_picture(const ReportOptions& options) {
                                radius, 3.0f * radius)
               .normal_mean;
     }
+    shapes = study_shapes(*context.value(), setting, options.quick, std::max(options.threads, 1));
+    if (!*shapes) std::printf("%s\n", shapes->error().text().c_str());
     std::printf("the bucket\n");
     const auto timed = bucket_times(*context.value(), setting, options.quick ? 5 : 30);
     if (!timed) return fail(timed.error());
@@ -300,15 +293,27 @@ int report_picture(const ReportOptions& options) {
       "the fastest, %.1f and %.1f.\n\n",
       kReportWidth, kReportHeight, 1e3 * kBucketSpacing, bucket.whole.processor, bucket.kept.processor,
       bucket.whole.wall, bucket.kept.wall);
-  std::printf("\n%s%s%s", table.c_str(), of_bucket.c_str(), drawn_by.c_str());
+  const std::string of_shapes =
+      shapes && *shapes
+          ? format("Beside the same at %g mm, by ray: pieces are connected pixels of fluid.\n\n",
+                   1e3 * shapes->value().right_spacing) +
+                shape_table(shapes->value())
+          : std::string();
+  std::printf("\n%s\n%s%s%s", table.c_str(), of_shapes.c_str(), of_bucket.c_str(), drawn_by.c_str());
   const Result<bool> written = write_whole(
       folder.value() / kPictureTable,
-      about + table + of_bucket + drawn_by + "\nThe pictures, left to right: paper, curvature flow, ours" +
-          (no_reference.empty() ? ", the reference" : "") + ".\n\n![](picture.png)\n");
+      about + table + "\n" + of_shapes + of_bucket + drawn_by +
+          "\nThe pictures, left to right: paper, curvature flow, ours" +
+          (no_reference.empty() ? ", the reference" : "") + ".\n\n![](picture.png)\n" +
+          (of_shapes.empty() ? ""
+                             : "\nOutside of a vessel, left to right: as it should be, then coarser and "
+                               "coarser.\n\n![](shapes.png)\n"));
   if (!written) return fail(written.error());
   const auto sheet = write_png(folder.value() / kSheet, beside(pictures));
   if (!sheet) return fail(sheet.error());
-  return kExitOk;
+  if (of_shapes.empty()) return kExitOk;
+  const auto shown = write_png(folder.value() / kShapes, shapes->value().sheet);
+  return shown ? kExitOk : fail(shown.error());
 }
 
 }  // namespace slosh

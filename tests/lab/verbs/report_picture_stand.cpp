@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <array>
 #include <chrono>
+#include <cmath>
 #include <ctime>
 
+#include "render/color/display_transform.h"
 #include "scenes/load.h"
 #include "tests/lab/report/passes.h"
 
@@ -18,6 +20,21 @@ RenderOptions report_options(Surface surface, int width, int height) {
   options.height = height;
   options.keep_still = false;  // a picture's time is that of all of it
   return options;
+}
+
+Result<Image> shown_image(const FloatImage& light) {
+  std::vector<glm::vec3> linear(light.values.size() / 3);
+  for (std::size_t i = 0; i < linear.size(); ++i)
+    linear[i] = {light.values[3 * i], light.values[3 * i + 1], light.values[3 * i + 2]};
+  const auto shown = display_colors(Display::kAces, linear);
+  if (!shown) return shown.error();
+  Image image{light.width, light.height, {}};
+  for (const glm::vec3& color : shown.value()) {
+    for (int c = 0; c < 3; ++c)
+      image.rgba.push_back(static_cast<std::uint8_t>(std::lround(255.0f * color[c])));
+    image.rgba.push_back(255);
+  }
+  return image;
 }
 
 Stand::Stand(std::unique_ptr<Renderer> renderer, const Scene& scene, double spacing, double aspect)

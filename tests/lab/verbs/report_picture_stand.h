@@ -21,6 +21,9 @@ inline constexpr double kBucketSpacing = 0.012;  ///< m, the scene's coarsest
 /// As play has it, or all of section 5; nothing is kept from picture to picture.
 RenderOptions report_options(Surface surface, int width, int height);
 
+/// Scene-linear light as it is shown (Display::kAces). Errors: no display transform.
+Result<Image> shown_image(const FloatImage& light);
+
 /// A scene's snapshots, drawn by one way.
 class Stand {
  public:

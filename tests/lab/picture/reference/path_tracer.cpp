@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "render/passes/frame_block.h"
+#include "render/renderer.h"
 #include "render/shader_math.h"
 #include "tests/lab/picture/reference/fluid_mesh.h"
 #include "tests/lab/picture/reference/focused_light.h"
@@ -251,19 +252,38 @@ class EmbreeTracer : public PathTracer {
     return static_cast<TextureHandle>(textures_.size() - 1);
   }
 
+  score::Exact first_seen(const Frame& frame, const Options& options) override {
+    RayScene scene;
+    FocusedLight::Source source;
+    fill(scene, source, frame, options.cell);
+    const auto pixels = static_cast<std::size_t>(options.width) * static_cast<std::size_t>(options.height);
+    score::Exact seen{{options.width, options.height, 1, std::vector<float>(pixels, kNoFluidDepth)},
+                      {options.width, options.height, 3, std::vector<float>(3 * pixels, 0.0f)}};
+    const glm::mat4 world_from_eye = glm::inverse(frame.view.view);
+    for (std::size_t i = 0; i < pixels; ++i) {
+      const auto x = static_cast<float>(i % static_cast<std::size_t>(options.width));
+      const auto y = static_cast<float>(i / static_cast<std::size_t>(options.width));
+      const glm::vec3 eye = eye_way(frame.view.projection, options, x + 0.5f, y + 0.5f);
+      const glm::vec3 way = glm::normalize(glm::mat3(world_from_eye) * eye);
+      glm::vec3 from(world_from_eye[3]);
+      float gone = 0.0f;
+      Hit hit = scene.nearest(from, way);
+      while (hit.there() && hit.fluid < 0 && hit.look->opacity < 1.0f) {
+        gone += hit.distance + kPastGlass;
+        hit = scene.nearest(from + gone * way, way);
+      }
+      if (hit.fluid < 0) continue;
+      const glm::vec3 normal = glm::mat3(frame.view.view) * hit.normal;
+      seen.depth.values[i] = (gone + hit.distance) / glm::length(eye);
+      for (int c = 0; c < 3; ++c) seen.normal.values[3 * i + static_cast<std::size_t>(c)] = normal[c];
+    }
+    return seen;
+  }
+
   FloatImage draw(const Frame& frame, const Options& options) override {
     RayScene scene;
-    for (const MeshInstance& instance : frame.meshes) {
-      if (instance.mesh < meshes_.size())
-        scene.add(meshes_[instance.mesh], instance.model, &instance.look, -1);
-    }
     FocusedLight::Source source;
-    for (FluidMesh& fluid : mesh_fluids(frame, options.cell)) {
-      for (const glm::vec3& p : fluid.positions) source.fluids.add(p);
-      scene.add({std::move(fluid.positions), std::move(fluid.normals), std::move(fluid.triangles), {}},
-                glm::mat4(1.0f), nullptr, static_cast<int>(fluid.fluid));
-    }
-    scene.finish();
+    fill(scene, source, frame, options.cell);
     Tracer tracer(scene, frame, textures_, Studio{}, options.environment);
     if (options.photons > 0) {
       source.to_light = tracer.to_light();
@@ -284,9 +304,8 @@ class EmbreeTracer : public PathTracer {
           glm::vec3 sum(0.0f);
           for (int s = 0; s < options.samples; ++s) {
             Random random(pixel, static_cast<std::uint64_t>(s));
-            const glm::vec2 ndc(2.0f * (x + random()) / options.width - 1.0f,
-                                1.0f - 2.0f * (y + random()) / options.height);
-            const glm::vec3 eye((ndc.x + p[2][0]) / p[0][0], (ndc.y + p[2][1]) / p[1][1], -1.0f);
+            const float across = static_cast<float>(x) + random();
+            const glm::vec3 eye = eye_way(p, options, across, static_cast<float>(y) + random());
             const glm::vec3 light = tracer.path(glm::vec3(world_from_eye[3]),
                                                 glm::normalize(glm::mat3(world_from_eye) * eye), random);
             // A rare bright path must not become a spot: what it has beyond this is lost.
@@ -306,6 +325,29 @@ class EmbreeTracer : public PathTracer {
   }
 
  private:
+  static constexpr float kPastGlass = 2e-5f;  // m
+
+  /// Pixels from the top left; its length is that of a unit of depth.
+  static glm::vec3 eye_way(const glm::mat4& projection, const Options& options, float x, float y) {
+    const glm::vec2 ndc(2.0f * x / static_cast<float>(options.width) - 1.0f,
+                        1.0f - 2.0f * y / static_cast<float>(options.height));
+    return {(ndc.x + projection[2][0]) / projection[0][0], (ndc.y + projection[2][1]) / projection[1][1],
+            -1.0f};
+  }
+
+  void fill(RayScene& scene, FocusedLight::Source& source, const Frame& frame, float cell) const {
+    for (const MeshInstance& instance : frame.meshes) {
+      if (instance.mesh < meshes_.size())
+        scene.add(meshes_[instance.mesh], instance.model, &instance.look, -1);
+    }
+    for (FluidMesh& fluid : mesh_fluids(frame, cell)) {
+      for (const glm::vec3& p : fluid.positions) source.fluids.add(p);
+      scene.add({std::move(fluid.positions), std::move(fluid.normals), std::move(fluid.triangles), {}},
+                glm::mat4(1.0f), nullptr, static_cast<int>(fluid.fluid));
+    }
+    scene.finish();
+  }
+
   std::vector<Triangles> meshes_;
   std::vector<RayTexture> textures_;
 };

@@ -9,6 +9,7 @@
 #include "render/frame.h"
 #include "render/image.h"
 #include "sim/math/result.h"
+#include "tests/lab/picture/score/pool.h"
 
 namespace slosh::reference {
 
@@ -35,6 +36,9 @@ class PathTracer : public MeshSink {
   /// without being mirrored back at its surface, since F_c is what comes out. No arrows, no HUD. The same
   /// frame and options give the same picture.
   virtual FloatImage draw(const Frame& frame, const Options& options) = 0;
+  /// Where fluid is the first thing that a pixel's middle sees, glass aside: what the pictures' depth and
+  /// normal should be. Of `options` size and cell count.
+  virtual score::Exact first_seen(const Frame& frame, const Options& options) = 0;
 };
 
 }  // namespace slosh::reference
