@@ -13,8 +13,6 @@
 namespace slosh::report {
 namespace {
 
-constexpr int kWarmUp = 10;
-
 struct Variant {
   PassRow row;
   World world;
@@ -70,10 +68,10 @@ double percentile(std::vector<double> values, double share) {
 StepCost measure_steps(World& world, std::span<const HandleInput> hands, const PassOptions& options) {
   std::vector<double> steps;
   std::array<std::vector<double>, kPassCount> parts;
-  for (int i = 0; i < kWarmUp + options.steps; ++i) {
+  for (int i = 0; i < options.warm_up + options.steps; ++i) {
     if (options.stopped && options.stopped()) throw Stopped();
     world.step(hands);
-    if (i < kWarmUp) continue;
+    if (i < options.warm_up) continue;
     steps.push_back(1e3 * world.times().total);
     for (std::size_t p = 0; p < kPassCount; ++p) parts[p].push_back(1e3 * world.times().pass[p]);
   }
@@ -118,14 +116,14 @@ PassTable measure_passes(const Scene& scene, const SampledScene& sampled, const 
   }
   // In turns, so that what else the machine does falls on all alike.
   Snapshot first, other;
-  for (int round = 0; round < kWarmUp + options.steps; ++round) {
+  for (int round = 0; round < options.warm_up + options.steps; ++round) {
     for (Variant& each : variants) {
       if (options.stopped && options.stopped()) throw Stopped();
       const auto before = std::chrono::steady_clock::now();
       each.world.step(hands);
       if (each.after) each.after(each.world);
       const std::chrono::duration<double, std::milli> took = std::chrono::steady_clock::now() - before;
-      if (round >= kWarmUp) each.times.push_back(took.count());
+      if (round >= options.warm_up) each.times.push_back(took.count());
     }
     if (round + 1 != kComparedSteps) continue;
     variants.front().world.fill(first);

@@ -41,7 +41,8 @@ struct PassTable {
 };
 
 struct PassOptions {
-  int steps = 100;  ///< timed, of each variant, in turns
+  int warm_up = 10;  ///< steps before
+  int steps = 100;   ///< timed, of each variant, in turns
   Backend backend = Backend::kCpu;
   int threads = 0;
   bool (*stopped)() = nullptr;

@@ -202,6 +202,11 @@ int report_speed(const ReportOptions& options, const SpeedOptions& speed) {
                       if (!found) progress.note("slosh: no roofline: " + found.error().text());
                     }});
     for (const PoolJob& job : pool_jobs(options, speed, backend)) {
+      // A GPU is quicker while the fluid still lies in rows
+      // (tests/notebook/2026-11-29-bytes-for-candidates.md). Spheres would have drifted into each other by
+      // then.
+      const bool settles = backend == Backend::kCuda && job.spheres == 0 && !options.quick;
+      how.warm_up = settles ? 1000 : report::PassOptions().warm_up;
       const double weight = static_cast<double>(job.particles) * how.steps + 1e6;
       const SpeedRow begun{
           .figure = job.figure, .backend = backend_name(backend), .device = device_of(options, backend)};
