@@ -19,8 +19,7 @@ Result<HostedWorld> start_anew(const HostVerbOptions& options, Progress& progres
   hosted.prepared = std::move(prepared.value());
   const Prepared& p = hosted.prepared;
   progress.phase(p.scene.settle > 0.0 ? "settling" : "starting");
-  Result<World> made =
-      make_world(p.scene, p.sampled, p.plan, {.threads = p.threads, .backend = p.backend, .gpu = p.gpu});
+  Result<World> made = make_world(p.scene, p.sampled, p.plan, p.world_options());
   if (!made) return made.error();
   hosted.world = std::move(made.value());
   // The host itself holds every grip where it starts until somebody takes it.
@@ -96,8 +95,7 @@ Result<HostedWorld> carry_on(const HostVerbOptions& options, Progress& progress)
   Result<SampledScene> sampled = sample_told(p.scene, kept.spacing, progress);
   if (!sampled) return sampled.error();
   Result<keep::RebuiltWorld> rebuilt =
-      keep::rebuild_world(p.scene, std::move(sampled.value()), kept.world,
-                          {.threads = p.threads, .backend = p.backend, .gpu = p.gpu});
+      keep::rebuild_world(p.scene, std::move(sampled.value()), kept.world, p.world_options());
   if (!rebuilt) return rebuilt.error();
   p.sampled = std::move(rebuilt.value().sampled);
   p.plan = rebuilt.value().world.plan();

@@ -32,9 +32,7 @@ Result<std::unique_ptr<LiveRun>> LocalRun::create(const Prepared& prepared, Devi
     if (const Result<bool> opened = open_device(*devices.devices[i]); !opened) return opened.error();
     for (const std::string& note : hand_notes(scene, i, *devices.devices[i])) progress.note("slosh: " + note);
   }
-  Result<World> made =
-      make_world(scene, prepared.sampled, prepared.plan,
-                 {.threads = prepared.threads, .backend = prepared.backend, .gpu = prepared.gpu});
+  Result<World> made = make_world(scene, prepared.sampled, prepared.plan, prepared.world_options());
   if (!made) return made.error();
   World& world = made.value();
   // Where the scene asks for it the world comes to rest in the hands as they are. Nobody else reads the

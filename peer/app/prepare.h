@@ -13,6 +13,7 @@
 #include "scenes/scene.h"
 #include "sim/backend.h"
 #include "sim/plan.h"
+#include "sim/world.h"
 
 namespace slosh {
 
@@ -42,6 +43,8 @@ struct Prepared : Stage {
   bool agreed = false;              ///< it may take as long as it takes
   bool unpaced = false;             ///< the world goes as fast as it can
   std::filesystem::path record;     ///< where the run is recorded; empty = it is not
+
+  WorldOptions world_options() const { return {.threads = threads, .backend = backend, .gpu = gpu}; }
 };
 
 /// Finds and loads a shipped name or a file.
