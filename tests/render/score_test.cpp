@@ -94,8 +94,7 @@ TEST_F(ScoreTest, TheExactPictureScoresNought) {
 /// Discs of fluid that face the eye, each x, y and radius in pixels.
 score::Exact discs(const std::vector<glm::vec3>& all) {
   constexpr int kSide = 100;
-  score::Exact exact{{kSide, kSide, 1, std::vector<float>(kSide * kSide, kNoFluidDepth)},
-                     {kSide, kSide, 3, std::vector<float>(3 * kSide * kSide, 0.0f)}};
+  score::Exact exact = score::nothing_seen(kSide, kSide);
   for (int i = 0; i < kSide * kSide; ++i) {
     for (const glm::vec3& disc : all) {
       if (glm::distance(glm::vec2(i % kSide, i / kSide), glm::vec2(disc)) > disc.z) continue;

@@ -73,7 +73,8 @@ TEST(CellGrid, CoarsePlacesMissNobodyInReach) {
         taken += near;
       }
       EXPECT_GT(in_reach, 5000);
-      EXPECT_LT(taken, (max_cells > 1e6 ? 1.1 : 1.2) * in_reach) << slices << " slices, at most " << max_cells << " cells";
+      EXPECT_LT(taken, (max_cells > 1e6 ? 1.1 : 1.2) * in_reach)
+          << slices << " slices, at most " << max_cells << " cells";
     }
   }
 }

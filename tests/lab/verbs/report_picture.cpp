@@ -112,22 +112,15 @@ Result<Image> reference_picture(const Scene& scene, double spacing, const Snapsh
 
 /// Pictures of one height beside each other.
 Image beside(const std::vector<Image>& images) {
-  Image sheet;
+  int width = 0, height = 0, left = 0;
   for (const Image& image : images) {
-    sheet.width += image.width;
-    sheet.height = image.height;
+    width += image.width;
+    height = image.height;
   }
-  sheet.rgba.resize(std::size_t{4} * static_cast<std::size_t>(sheet.width) * sheet.height);
-  std::size_t left = 0;
+  Image sheet = empty_sheet(width, height);
   for (const Image& image : images) {
-    const std::size_t row = std::size_t{4} * static_cast<std::size_t>(image.width);
-    for (int y = 0; y < image.height; ++y) {
-      std::copy_n(
-          image.rgba.begin() + static_cast<std::ptrdiff_t>(row * static_cast<std::size_t>(y)), row,
-          sheet.rgba.begin() +
-              static_cast<std::ptrdiff_t>(std::size_t{4} * static_cast<std::size_t>(sheet.width * y) + left));
-    }
-    left += row;
+    put(image, left, 0, sheet);
+    left += image.width;
   }
   return sheet;
 }

@@ -146,16 +146,6 @@ score::Exact drawn_shape(Renderer& renderer) {
   return drawn;
 }
 
-void put(const Image& picture, int column, int row, Image& sheet) {
-  for (int y = 0; y < picture.height; ++y) {
-    const auto* from = picture.rgba.data() + std::size_t{4} * static_cast<std::size_t>(y * picture.width);
-    std::copy_n(from, std::size_t{4} * static_cast<std::size_t>(picture.width),
-                sheet.rgba.data() + std::size_t{4} * (static_cast<std::size_t>(row * kSize.y + y) *
-                                                          static_cast<std::size_t>(sheet.width) +
-                                                      static_cast<std::size_t>(column * kSize.x)));
-  }
-}
-
 }  // namespace
 
 Result<ShapeStudy> study_shapes(Context& context, report::Setting setting, bool quick, int threads) {
@@ -163,9 +153,7 @@ Result<ShapeStudy> study_shapes(Context& context, report::Setting setting, bool 
   ShapeStudy study;
   study.right_spacing = quick ? 0.004 : 0.0025;
   const int cases = static_cast<int>(std::size(kCases)) + 1;
-  study.sheet.width = kSize.x * (1 + static_cast<int>(spacings.size()));
-  study.sheet.height = kSize.y * cases;
-  study.sheet.rgba.resize(std::size_t{4} * static_cast<std::size_t>(study.sheet.width) * study.sheet.height);
+  study.sheet = empty_sheet(kSize.x * (1 + static_cast<int>(spacings.size())), kSize.y * cases);
   for (int row = 0; row < cases; ++row) {
     const bool falling = row + 1 == cases;
     const char* name = falling ? "drops" : kCases[row].name;
@@ -189,12 +177,13 @@ Result<ShapeStudy> study_shapes(Context& context, report::Setting setting, bool 
         right = std::move(made.value());
         const auto shown = shown_image(right->light);
         if (!shown) return shown.error();
-        put(shown.value(), 0, row, study.sheet);
+        put(shown.value(), 0, kSize.y * row, study.sheet);
       }
       auto stand = Stand::create(context, Surface::kOurs, scene, spacing, false, kSize);
       if (!stand) return stand.error();
       const Snapshot snapshot = snapshot_at(spacing);
-      put(stand.value()->draw(snapshot), static_cast<int>(column) + 1, row, study.sheet);
+      put(stand.value()->draw(snapshot), kSize.x * (static_cast<int>(column) + 1), kSize.y * row,
+          study.sheet);
       const auto same = by_ray(scene, spacing, snapshot, 0, threads);
       if (!same) return same.error();
       study.rows.push_back({name, spacing,

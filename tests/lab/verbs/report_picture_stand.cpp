@@ -37,6 +37,22 @@ Result<Image> shown_image(const FloatImage& light) {
   return image;
 }
 
+Image empty_sheet(int width, int height) {
+  return {width, height,
+          std::vector<std::uint8_t>(std::size_t{4} * static_cast<std::size_t>(width) *
+                                    static_cast<std::size_t>(height))};
+}
+
+void put(const Image& picture, int left, int top, Image& sheet) {
+  const auto at = [](const Image& image, int x, int y) {
+    return std::size_t{4} * (static_cast<std::size_t>(y) * static_cast<std::size_t>(image.width) +
+                             static_cast<std::size_t>(x));
+  };
+  for (int y = 0; y < picture.height; ++y)
+    std::copy_n(picture.rgba.data() + at(picture, 0, y), at(picture, picture.width, 0),
+                sheet.rgba.data() + at(sheet, left, top + y));
+}
+
 Stand::Stand(std::unique_ptr<Renderer> renderer, const Scene& scene, double spacing, double aspect)
     : renderer_(std::move(renderer)),
       builder_(scene, spacing, *renderer_),

@@ -24,6 +24,11 @@ RenderOptions report_options(Surface surface, int width, int height);
 /// Scene-linear light as it is shown (Display::kAces). Errors: no display transform.
 Result<Image> shown_image(const FloatImage& light);
 
+/// Of nothing, for pictures to be put on.
+Image empty_sheet(int width, int height);
+/// `left` and `top` in pixels; it must fit.
+void put(const Image& picture, int left, int top, Image& sheet);
+
 /// A scene's snapshots, drawn by one way.
 class Stand {
  public:

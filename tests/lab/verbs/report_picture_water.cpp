@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "render/renderer.h"
-
 namespace slosh {
 namespace {
 
@@ -71,8 +69,7 @@ std::pair<Scene, std::vector<Snapshot>> stirred_water(const report::Setting& set
 score::Exact still_surface(const View& view, double spacing, int width, int height) {
   const auto columns = static_cast<std::size_t>(width);
   const auto pixels = columns * static_cast<std::size_t>(height);
-  score::Exact exact{{width, height, 1, std::vector<float>(pixels, kNoFluidDepth)},
-                     {width, height, 3, std::vector<float>(3 * pixels, 0.0f)}};
+  score::Exact exact = score::nothing_seen(width, height);
   const glm::mat4 world_from_eye = glm::inverse(view.view);
   const glm::vec3 from(world_from_eye[3]);
   const glm::vec3 up = glm::mat3(view.view) * glm::vec3(0.0f, 1.0f, 0.0f);

@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "render/passes/frame_block.h"
-#include "render/renderer.h"
 #include "render/shader_math.h"
 #include "tests/lab/picture/reference/fluid_mesh.h"
 #include "tests/lab/picture/reference/focused_light.h"
@@ -254,13 +253,10 @@ class EmbreeTracer : public PathTracer {
 
   score::Exact first_seen(const Frame& frame, const Options& options) override {
     RayScene scene;
-    FocusedLight::Source source;
-    fill(scene, source, frame, options.cell);
-    const auto pixels = static_cast<std::size_t>(options.width) * static_cast<std::size_t>(options.height);
-    score::Exact seen{{options.width, options.height, 1, std::vector<float>(pixels, kNoFluidDepth)},
-                      {options.width, options.height, 3, std::vector<float>(3 * pixels, 0.0f)}};
+    fill(scene, frame, options.cell);
+    score::Exact seen = score::nothing_seen(options.width, options.height);
     const glm::mat4 world_from_eye = glm::inverse(frame.view.view);
-    for (std::size_t i = 0; i < pixels; ++i) {
+    for (std::size_t i = 0; i < seen.depth.values.size(); ++i) {
       const auto x = static_cast<float>(i % static_cast<std::size_t>(options.width));
       const auto y = static_cast<float>(i / static_cast<std::size_t>(options.width));
       const glm::vec3 eye = eye_way(frame.view.projection, options, x + 0.5f, y + 0.5f);
@@ -283,7 +279,7 @@ class EmbreeTracer : public PathTracer {
   FloatImage draw(const Frame& frame, const Options& options) override {
     RayScene scene;
     FocusedLight::Source source;
-    fill(scene, source, frame, options.cell);
+    source.fluids = fill(scene, frame, options.cell);
     Tracer tracer(scene, frame, textures_, Studio{}, options.environment);
     if (options.photons > 0) {
       source.to_light = tracer.to_light();
@@ -335,17 +331,20 @@ class EmbreeTracer : public PathTracer {
             -1.0f};
   }
 
-  void fill(RayScene& scene, FocusedLight::Source& source, const Frame& frame, float cell) const {
+  /// What holds the fluids.
+  Bounds fill(RayScene& scene, const Frame& frame, float cell) const {
+    Bounds fluids;
     for (const MeshInstance& instance : frame.meshes) {
       if (instance.mesh < meshes_.size())
         scene.add(meshes_[instance.mesh], instance.model, &instance.look, -1);
     }
     for (FluidMesh& fluid : mesh_fluids(frame, cell)) {
-      for (const glm::vec3& p : fluid.positions) source.fluids.add(p);
+      for (const glm::vec3& p : fluid.positions) fluids.add(p);
       scene.add({std::move(fluid.positions), std::move(fluid.normals), std::move(fluid.triangles), {}},
                 glm::mat4(1.0f), nullptr, static_cast<int>(fluid.fluid));
     }
     scene.finish();
+    return fluids;
   }
 
   std::vector<Triangles> meshes_;

@@ -1,5 +1,6 @@
 #include "tests/lab/picture/score/pool.h"
 
+#include <algorithm>
 #include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
 
@@ -98,10 +99,22 @@ Pool make_pool(float pixels, int width, int height_pixels, std::uint32_t seed) {
   return pool;
 }
 
+Exact nothing_seen(int width, int height) {
+  const auto pixels = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
+  return {{width, height, 1, std::vector<float>(pixels, kNoFluidDepth)},
+          {width, height, 3, std::vector<float>(3 * pixels, 0.0f)}};
+}
+
+bool is_fluid(float depth) {
+  return depth < 0.5f * kNoFluidDepth;
+}
+
+double degrees_between(const glm::vec3& a, const glm::vec3& b) {
+  return glm::degrees(std::acos(std::clamp(double{glm::dot(a, b)}, -1.0, 1.0)));
+}
+
 Exact exact_pool(const Pool& pool, int width, int height_pixels) {
-  const auto pixels = static_cast<std::size_t>(width) * static_cast<std::size_t>(height_pixels);
-  Exact exact{{width, height_pixels, 1, std::vector<float>(pixels, kNoFluidDepth)},
-              {width, height_pixels, 3, std::vector<float>(3 * pixels, 0.0f)}};
+  Exact exact = nothing_seen(width, height_pixels);
   const glm::mat4 world_from_eye = glm::inverse(pool.view.view);
   const glm::mat4& p = pool.view.projection;
   const glm::vec3 from(world_from_eye[3]);

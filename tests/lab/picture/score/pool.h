@@ -28,6 +28,13 @@ struct Exact {
   FloatImage depth;   ///< m, linear eye depth; kNoFluidDepth = none
   FloatImage normal;  ///< three channels, eye axes
 };
+/// Of a picture without fluid.
+Exact nothing_seen(int width, int height);
+/// Whether a pixel of such a depth shows fluid.
+bool is_fluid(float depth);
+/// Of the angle between two unit vectors.
+double degrees_between(const glm::vec3& a, const glm::vec3& b);
+
 Exact exact_pool(const Pool& pool, int width, int height);
 
 }  // namespace slosh::score

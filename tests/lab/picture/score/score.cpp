@@ -10,10 +10,6 @@
 namespace slosh::score {
 namespace {
 
-bool is_fluid(float depth) {
-  return depth < 0.5f * kNoFluidDepth;
-}
-
 /// Pixels within kEdgeBand of a jump of the exact depth or of the picture's end.
 std::vector<bool> edges(const FloatImage& depth, float jump) {
   const int width = depth.width;
@@ -58,7 +54,7 @@ SurfaceScore score_surface(const FloatImage& depth, const FloatImage& normal, co
       const glm::vec3 n(normal.at(x, y, 0), normal.at(x, y, 1), normal.at(x, y, 2));
       if (!there || !drawn || glm::dot(n, n) < 0.5f) continue;
       const glm::vec3 e(exact.normal.at(x, y, 0), exact.normal.at(x, y, 1), exact.normal.at(x, y, 2));
-      const double angle = glm::degrees(std::acos(std::clamp(double{glm::dot(n, e)}, -1.0, 1.0)));
+      const double angle = degrees_between(n, e);
       if (edge[i]) {
         edge_sum += angle;
         ++edge_count;

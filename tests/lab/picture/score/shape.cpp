@@ -1,17 +1,14 @@
 #include "tests/lab/picture/score/shape.h"
 
 #include <algorithm>
-#include <cmath>
 #include <vector>
-
-#include "render/renderer.h"
 
 namespace slosh::score {
 namespace {
 
 std::vector<char> fluid_of(const FloatImage& depth) {
   std::vector<char> fluid(depth.values.size());
-  std::ranges::transform(depth.values, fluid.begin(), [](float d) { return d < 0.5f * kNoFluidDepth; });
+  std::ranges::transform(depth.values, fluid.begin(), is_fluid);
   return fluid;
 }
 
@@ -59,7 +56,7 @@ ShapeScore score_shape(const Exact& drawn, const Exact& right) {
     };
     const glm::vec3 n = normal(drawn.normal), m = normal(right.normal);
     if (glm::dot(n, n) < 0.5f) continue;
-    score.normal_mean += glm::degrees(std::acos(std::clamp(double{glm::dot(n, m)}, -1.0, 1.0)));
+    score.normal_mean += degrees_between(n, m);
     ++normals;
   }
   const auto share = [](std::size_t of, std::size_t whole) {

@@ -15,7 +15,7 @@ struct ShapeScore {
 };
 inline constexpr int kMinPiece = 6;
 
-/// Both of one size. A pixel shows fluid where its depth is below half of kNoFluidDepth.
+/// Both of one size.
 ShapeScore score_shape(const Exact& drawn, const Exact& right);
 
 }  // namespace slosh::score
