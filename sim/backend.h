@@ -1,6 +1,7 @@
 // Which machine steps the particles.
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -23,6 +24,12 @@ struct CudaDevice {
   std::string name;    ///< of the GPU, empty without one
   std::string reason;  ///< why there is none, in words; empty with one
 };
+
+struct Plan;
+
+/// How `fluid` particles of a plan are stepped on kCpu or kCuda (its GPU number `gpu`), and what decided it:
+/// one line.
+std::string variant_in_words(const Plan& plan, std::uint32_t fluid, Backend backend, int gpu = 0);
 
 /// Asks the machine for its GPU number `gpu`, from 0 as CUDA counts, and whether this program can run on it.
 /// Where it was built without CUDA there never is one.

@@ -30,6 +30,10 @@ bool cuda_available(std::string* reason, int gpu) {
   return device.available;
 }
 
+std::string variant_in_words(const Plan& plan, std::uint32_t fluid, Backend backend, int gpu) {
+  return backend == Backend::kCuda ? cuda_variant(plan, fluid, gpu) : cpu_variant();
+}
+
 Result<std::unique_ptr<ParticleEngine>> make_particle_engine(const RunConstants& constants,
                                                              const ParticleStart& start,
                                                              std::span<const RigidBody> bodies,

@@ -77,19 +77,22 @@ std::string plan_numbers(const Scene& scene, const Plan& plan, double fluid, dou
   return text;
 }
 
-Result<std::string> step_cost_in_words(const Scene& scene, const Plan& plan, double particles) {
-  const auto line = [&](double seconds, const char* how) {
-    return format("a step          about %.3g ms %s, real time × %.2g\n", 1e3 * seconds, how,
+Result<std::string> step_cost_in_words(const Scene& scene, const Plan& plan, double particles,
+                                       Backend backend, int gpu) {
+  const auto line = [&](double seconds, const std::string& how) {
+    return format("a step          about %.3g ms on %s, real time × %.2g\n", 1e3 * seconds, how.c_str(),
                   plan.time_step / seconds);
   };
-  if (particles <= kMaxToStep) {
+  if (particles <= (backend == Backend::kCuda ? kMaxToStepOnGpu : kMaxToStep)) {
     const Result<SampledScene> sampled = sample_scene(scene, plan.spacing);
     if (!sampled) return sampled.error();
-    Result<World> world = make_world(scene, sampled.value(), plan, {0, Backend::kCpu});
+    Result<World> world = make_world(scene, sampled.value(), plan, {.backend = backend, .gpu = gpu});
     if (!world) return world.error();
-    return line(measure_step(world.value(), {}), "on this machine's cores, as the scene starts");
+    return line(measure_step(world.value(), {}), world.value().backend() + ", as the scene starts");
   }
-  return line(particles * kStatedStepCost, "on one core of an ordinary machine, not measured");
+  if (backend == Backend::kCuda)
+    return line(particles * kStatedStepCostOnGpu, "an H200, not measured on this machine");
+  return line(particles * kStatedStepCost, "one core of an ordinary machine, not measured");
 }
 
 std::string picture_in_words(const Scene& scene) {

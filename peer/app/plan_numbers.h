@@ -4,6 +4,7 @@
 #include <string>
 
 #include "scenes/scene.h"
+#include "sim/backend.h"
 #include "sim/math/result.h"
 #include "sim/plan.h"
 
@@ -23,9 +24,11 @@ std::string picture_in_words(const Scene& scene);
 
 /// Above so many particles (estimate_particles) `plan` does not sample the scene to take its steps.
 constexpr double kMaxToStep = 150000.0;
+constexpr double kMaxToStepOnGpu = 2e6;
 
-/// What a step costs on this machine: of the scene as it starts, its hands where they are, all cores, no GPU.
-/// Above kMaxToStep a stated rate. One line. Errors: those of sampling it and of making its world.
-Result<std::string> step_cost_in_words(const Scene& scene, const Plan& plan, double particles);
+/// What a step costs on this machine's kCpu (all cores) or kCuda: of the scene as it starts, its hands where
+/// they are. Above kMaxToStep a stated rate. One line. Errors: those of sampling it and of making its world.
+Result<std::string> step_cost_in_words(const Scene& scene, const Plan& plan, double particles,
+                                       Backend backend, int gpu);
 
 }  // namespace slosh

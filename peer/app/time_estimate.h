@@ -32,6 +32,8 @@ std::string duration(double seconds);
 
 /// s a particle and step, on one core: what the slowest machine tried takes twice of.
 constexpr double kStatedStepCost = 5e-7;
+/// The same on a large GPU, of millions.
+constexpr double kStatedStepCostOnGpu = 7e-10;
 
 /// s, the median of some steps; the world is put back bitwise. 0 where it cannot be saved.
 double measure_step(World& world, std::span<const HandleInput> hands);

@@ -156,6 +156,10 @@ class CpuEngine final : public ParticleEngine {
 
 }  // namespace
 
+std::string cpu_variant() {
+  return std::to_string(kLanes) + " neighbours at a time (" + kInstructions + ")";
+}
+
 std::unique_ptr<ParticleEngine> make_cpu_engine(const RunConstants& constants, const ParticleStart& start,
                                                 std::span<const RigidBody> bodies, int threads) {
   return std::make_unique<CpuEngine>(constants, start, bodies, threads);

@@ -11,4 +11,7 @@ namespace slosh {
 std::unique_ptr<ParticleEngine> make_cpu_engine(const RunConstants& constants, const ParticleStart& start,
                                                 std::span<const RigidBody> bodies, int threads);
 
+/// variant_in_words() of this processor.
+std::string cpu_variant();
+
 }  // namespace slosh

@@ -14,6 +14,17 @@ namespace slosh {
 
 using FloatBatch = xsimd::batch<float>;
 inline constexpr std::size_t kLanes = FloatBatch::size;
+/// What the batches are made of, for people.
+inline constexpr const char* kInstructions =
+#if defined(__AVX512F__)
+    "AVX-512";
+#elif defined(__AVX2__)
+    "AVX2";
+#elif defined(__x86_64__)
+    "SSE";
+#else
+    "this processor's";
+#endif
 
 template <>
 struct RealOps<FloatBatch> {

@@ -13,4 +13,8 @@ Result<std::unique_ptr<ParticleEngine>> make_cuda_engine(const RunConstants&, co
                "Build with -DSLOSH_CUDA=ON where there is a CUDA compiler"};
 }
 
+std::string cuda_variant(const Plan&, std::uint32_t, int) {
+  return {};
+}
+
 }  // namespace slosh

@@ -4,6 +4,7 @@
 #include "sim/cuda/shared_slots.h"
 #include "sim/cuda/state.h"
 #include "sim/fluid_sums.h"
+#include "sim/math/format.h"
 
 namespace slosh {
 
@@ -304,6 +305,26 @@ Result<std::unique_ptr<ParticleEngine>> make_cuda_engine(const RunConstants& con
                  "Use the CPU backend, or a coarser spacing if the GPU's memory ran out"};
   }
   return std::unique_ptr<ParticleEngine>(std::move(engine));
+}
+
+std::string cuda_variant(const Plan& plan, std::uint32_t fluid, int gpu) {
+  int major = 0, minor = 0;
+  cudaSetDevice(gpu);
+  cudaDeviceGetAttribute(&major, cudaDevAttrComputeCapabilityMajor, gpu);
+  cudaDeviceGetAttribute(&minor, cudaDevAttrComputeCapabilityMinor, gpu);
+  const auto threads = [&](const cuda::TeamSizes& sizes, const char* pass) {
+    const std::uint32_t lanes = sizes.lanes(fluid);
+    const std::uint32_t most = lanes == 4 ? sizes.four : lanes == 2 ? sizes.two : 0;
+    return format("%u thread%s a particle%s (%s than %u thousand fluid particles)", lanes,
+                  lanes == 1 ? "" : "s", pass, most > 0 ? "no more" : "more",
+                  (most > 0 ? most : std::max(sizes.four, sizes.two)) / 1000);
+  };
+  return (corrects_gradients(plan.model) ? threads(cuda::kTensorTeams, "")
+                                         : threads(cuda::kDensityTeams, " in density") + ", " +
+                                               threads(cuda::kForceTeams, " in forces")) +
+         (cuda::launches_early() ? ", a kernel comes up while the last one ends"
+                                 : ", a kernel comes up when the last one has ended") +
+         format(" (compute capability %d.%d)", major, minor);
 }
 
 }  // namespace slosh

@@ -14,4 +14,7 @@ Result<std::unique_ptr<ParticleEngine>> make_cuda_engine(const RunConstants& con
                                                          const ParticleStart& start,
                                                          std::span<const RigidBody> bodies, int gpu);
 
+/// variant_in_words() of a GPU that is there.
+std::string cuda_variant(const Plan& plan, std::uint32_t fluid, int gpu);
+
 }  // namespace slosh

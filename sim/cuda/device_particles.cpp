@@ -86,7 +86,7 @@ void FluidBuffers::allocate(std::size_t count, const RunConstants& constants, co
     push_a_.allocate(with_nobodies, check);
     push_b_.allocate(with_nobodies, check);
     drag_z_.allocate(with_nobodies, check);
-    const std::uint32_t lanes = tensor_lanes(static_cast<std::uint32_t>(count));
+    const std::uint32_t lanes = kTensorTeams.lanes(static_cast<std::uint32_t>(count));
     // A team's rows of cells do not share out evenly.
     const std::uint32_t room = row_room(constants.plan) / lanes / kListed * kListed + (lanes > 1 ? 8 : 0);
     const std::size_t threads = (count * lanes + 127) / 128 * 128;

@@ -34,6 +34,27 @@ struct StepConstants {
   CorrectionConstants correction;
 };
 
+/// Whether the thread's GPU can bring a kernel up while the one before it ends (programmatic dependent
+/// launch): up to a tenth of a step of small kernels.
+inline bool launches_early() {
+  int gpu = 0, major = 0;
+  return cudaGetDevice(&gpu) == cudaSuccess &&
+         cudaDeviceGetAttribute(&major, cudaDevAttrComputeCapabilityMajor, gpu) == cudaSuccess && major >= 9;
+}
+
+/// Up to how many particles teams of four threads and of two are quickest; measured on an H200
+/// (tests/bench/results/2026-11-cuda-teams-h200.csv).
+struct TeamSizes {
+  std::uint32_t four, two;
+  constexpr std::uint32_t lanes(std::uint32_t count) const {
+    return count <= four ? 4 : count <= two ? 2 : 1;
+  }
+};
+/// Of the corrected model, whose pairs take more work, and of bodies' particles.
+inline constexpr TeamSizes kTensorTeams{60'000, 0};
+inline constexpr TeamSizes kDensityTeams{50'000, 100'000};
+inline constexpr TeamSizes kForceTeams{100'000, 700'000};
+
 /// A grid's cells in tiles of some thousand, each of whole lines along x: fluid fills a small part of most
 /// domains, and a sort looks at those tiles alone that have particles.
 struct CellTiles {
@@ -262,8 +283,6 @@ void launch_damp(float4* velocities, std::uint32_t count, float keep, cudaStream
 void launch_scatter(const StepConstants& constants, const FluidView& fluid, std::uint32_t count,
                     std::uint32_t visible, float* positions, std::uint8_t* kinds, cudaStream_t stream);
 
-/// density.cu: how many threads share a particle of the corrected model's, in its passes over fluid.
-std::uint32_t tensor_lanes(std::uint32_t count);
 /// density.cu: Eq 2 and 7. `artificial`: any_artificial_viscosity.
 void launch_density(const StepConstants& constants, const Plan& plan, const ParticleKind* kinds,
                     bool artificial, const SortedFluid& fluid, const SortedSurface& fixed,

@@ -16,18 +16,6 @@ inline unsigned blocks_for(std::uint32_t count, int threads = kThreads) {
   return (count + static_cast<unsigned>(threads) - 1) / static_cast<unsigned>(threads);
 }
 
-/// Whether the GPU can bring a kernel up while the one before it ends (programmatic dependent launch): up to
-/// a tenth of a step of small kernels.
-inline bool launches_early() {
-  static const bool can = [] {
-    int device = 0, major = 0;
-    return cudaGetDevice(&device) == cudaSuccess &&
-           cudaDeviceGetAttribute(&major, cudaDevAttrComputeCapabilityMajor, device) == cudaSuccess &&
-           major >= 9;
-  }();
-  return can;
-}
-
 /// kernel<<<blocks, threads, 0, stream>>>(arguments…) for a kernel that begins with wait_for_last_kernel().
 template <class... Parameters, class... Arguments>
 void launch_early(void (*kernel)(Parameters...), unsigned blocks, unsigned threads, cudaStream_t stream,
@@ -75,24 +63,16 @@ struct Team {
 };
 using Alone = Team<1>;
 
-/// Up to how many particles teams of four and of two are quickest; measured on an H200
-/// (tests/bench/results/2026-11-cuda-teams-h200.csv).
-struct TeamSizes {
-  std::uint32_t four, two;
-};
 /// Calls f.template operator()<Team>() with the team for `count` particles.
 template <TeamSizes sizes, class F>
 void with_team(std::uint32_t count, F&& f) {
-  if (count <= sizes.four) return f.template operator()<Team<4>>();
+  const std::uint32_t lanes = sizes.lanes(count);
+  if (lanes == 4) return f.template operator()<Team<4>>();
   if constexpr (sizes.two > sizes.four) {
-    if (count <= sizes.two) return f.template operator()<Team<2>>();
+    if (lanes == 2) return f.template operator()<Team<2>>();
   }
   f.template operator()<Alone>();
 }
-/// Of the corrected model, whose pairs take more work, and of bodies' particles.
-inline constexpr TeamSizes kTensorTeams{60'000, 0};
-inline constexpr TeamSizes kDensityTeams{50'000, 100'000};
-inline constexpr TeamSizes kForceTeams{100'000, 700'000};
 
 /// The ticket of who has this key.
 __device__ inline std::uint32_t take_ticket(const SortView& sort, std::uint32_t key, std::uint32_t retired) {

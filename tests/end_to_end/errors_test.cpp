@@ -35,6 +35,7 @@ void expect_error(const Arguments& arguments, int code, const std::vector<std::s
 TEST(Errors, AnUnknownSceneNamesTheKnownOnes) {
   expect_error({"play", "bukket", "--headless"}, 1, {"slosh: ", "bukket", "Did you mean bucket?", "pour"});
   expect_error({"plan", "bukket"}, 1, {"bukket"});
+  expect_error({"plan", "bucket", "--backend", "gpu"}, 2, {"gpu", "cuda"});
   expect_error({"check", "nowhere.gltf"}, 1, {"nowhere.gltf"});
 }
 

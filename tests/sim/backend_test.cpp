@@ -55,6 +55,21 @@ TEST(Backend, AskingForCudaGivesCudaOrAnError) {
   EXPECT_NE(world.error().mend.find("CPU"), std::string::npos);
 }
 
+// On a GPU four threads share a particle of few, one has a particle of many to itself; the processor's is the
+// same at any count.
+TEST(Backend, ItsVariantGoesByTheCount) {
+  const Tank tank = make_tank({});
+  const Plan plan = make_plan(tank.scene, tank.sampled.spacing);
+  const auto words = [&](std::uint32_t count, Backend on) { return variant_in_words(plan, count, on); };
+  EXPECT_NE(words(1000, Backend::kCpu).find(" neighbours at a time ("), std::string::npos);
+  EXPECT_EQ(words(1000, Backend::kCpu), words(1'000'000, Backend::kCpu));
+  if (!cuda_available()) return;
+  EXPECT_EQ(words(60'000, Backend::kCuda).rfind("4 threads a particle (no more than 60 thousand", 0), 0u)
+      << words(60'000, Backend::kCuda);
+  EXPECT_EQ(words(60'001, Backend::kCuda).rfind("1 thread a particle (more than 60 thousand", 0), 0u)
+      << words(60'001, Backend::kCuda);
+}
+
 // No model is one backend's alone.
 TEST(Backend, AutoTakesTheSameForEveryModel) {
   for (const ParticleModel model :

@@ -171,12 +171,6 @@ __global__ __launch_bounds__(kThreads, kBlocksOfTensors) void corrected_density_
 
 }  // namespace
 
-std::uint32_t tensor_lanes(std::uint32_t count) {
-  std::uint32_t lanes = 1;
-  with_team<kTensorTeams>(count, [&]<class Team>() { lanes = Team::kLanes; });
-  return lanes;
-}
-
 void launch_density(const StepConstants& constants, const Plan& plan, const ParticleKind* kinds,
                     bool artificial, const SortedFluid& fluid, const SortedSurface& fixed,
                     const SortedSurface& moving, std::uint32_t* status, cudaStream_t stream) {

@@ -36,7 +36,7 @@ void PressureSolver::plan(const Plan& plan, const ParticleStart& start, std::siz
 }
 
 void PressureSolver::allocate_vectors(CallCheck& check) {
-  const std::size_t fluid = view_.fluid, threads = fluid * tensor_lanes(view_.fluid);
+  const std::size_t fluid = view_.fluid, threads = fluid * kTensorTeams.lanes(view_.fluid);
   for (DeviceBuffer<uint4>* buffer : {&by_own_, &by_other_})
     buffer->allocate(PressRows::places(threads, view_.rows.room), check);
   heads_.allocate(threads, check);

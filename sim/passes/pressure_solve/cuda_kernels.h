@@ -57,7 +57,7 @@ struct PressRows {
 /// All that the solve works on, in device memory.
 struct PressureView {
   std::uint32_t fluid = 0, surface = 0;  ///< particles, the latter of the bodies that may move
-  PressRows rows;                        ///< one a thread, tensor_lanes() a particle
+  PressRows rows;                        ///< one a thread, kTensorTeams.lanes() a particle
   PairRows touches;       ///< of the fluid: what 1 Pa of its own pushes it by, by bodies that may move, m²
   PairRows presses;       ///< of a body's particle: what 1 Pa of a fluid particle pushes it by, in its units
   float4* own = nullptr;  ///< what 1 Pa of its own pushes it by, in its units, by fluid, walls and bodies;
