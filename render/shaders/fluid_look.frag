@@ -134,6 +134,63 @@ vec3 seen_behind(ivec2 looked_up) {
 #endif
 }
 
+// Water in the air is a lens: a stream, a sheet, a drop. It shows the room upside down, with dark and bright lines where light comes
+// from far off the line of sight; as a slab, which shows what is behind it nearly as it is, it could hardly be seen. share: 0 where
+// the far side is a body's or the way is so long that the far side as it is known says little.
+struct Lens {
+  float share;
+  vec3 light;
+};
+
+// m of fluid on the line of sight of a place in the picture; 0 where there is none. By summed chords, which are soft as befits many
+// particles; of a drop by its own two sides. `many`: 0–1.
+float way_at(vec2 at, float many) {
+  float front = texelFetch(smooth_depth, clamp(ivec2(at), ivec2(0), ivec2(picture.xy) - 1), 0).r;
+  float span = front > kFluidDepthLimit ? 0.0 : max(back_at(at) - front, 0.0);
+  float chords = texture(summed_chord, at * picture.zw).r;
+  return mix(layered_thickness(span, chords), chords, many);
+}
+
+Lens lens_here(vec3 here, vec3 n, vec3 inside, float refraction, float thickness, float scene, float back, vec2 middle) {
+  Lens lens = Lens(0.0, vec3(0.0));
+  if (look_switches.x <= 0.5) return lens;
+  lens.share = smoothstep(0.5, 2.0, (scene - back) / splat.x) * (1.0 - smoothstep(6.0, 9.0, thickness / splat.x));
+  if (lens.share <= 0.0) return lens;
+  // Nor at the edge of much fluid: the way through it a little further in.
+  float beside = clamp(7.0 * splat.x * splat.y / -here.z, 4.0, 96.0);
+  float most = 0.0;
+  for (int k = 0; k < 8; ++k) {
+    float angle = 0.7853982 * float(k);
+    vec2 at = middle + ((k & 1) == 0 ? beside : 0.5 * beside) * vec2(cos(angle), sin(angle));
+    most = max(most, texture(summed_chord, at * picture.zw).r);
+  }
+  lens.share *= 1.0 - smoothstep(4.5, 7.0, most / splat.x);
+  if (lens.share <= 0.0) return lens;
+  float reach = clamp(0.5 * splat.x * splat.y / -here.z, 2.0, 16.0);
+  float many = smoothstep(1.8, 3.0, thickness / splat.x);
+  vec2 growth = vec2(0.0);
+  for (int axis = 0; axis < 2; ++axis) {
+    vec2 off = axis == 0 ? vec2(reach, 0.0) : vec2(0.0, reach);
+    growth[axis] = way_at(middle + off, many) - way_at(middle - off, many);
+  }
+  growth *= splat.y / (2.0 * reach * -here.z);
+  vec3 way = leaving_way(inside, far_normal(n, growth), refraction);
+  vec3 out_at = here + inside * (thickness / max(-inside.z, 0.25));
+  lens.light = mirrored(mat3(world_from_eye) * way);
+  // A body that the picture shows, where the way leads to one: guessed at the depth of what is behind, then at that of what is there.
+  if (way.z > -0.1) return lens;
+  float depth = min(scene, camera.w);
+  for (int guess = 0; guess < 2; ++guess) {
+    vec3 place = out_at + way * (max(depth + out_at.z, 0.0) / -way.z);
+    vec2 at = ((place.xy / (unproject.xy * max(-place.z, 1.0e-3)) - unproject.zw) * 0.5 + 0.5) * picture.xy;
+    if (any(lessThan(at, vec2(0.0))) || any(greaterThanEqual(at, picture.xy))) return lens;
+    depth = texelFetch(scene_depth, ivec2(at), 0).r;
+    if (depth > camera.w) return lens;
+    if (guess == 1 && depth > -here.z) lens.light = texelFetch(scene_color, ivec2(at), 0).rgb;
+  }
+  return lens;
+}
+
 FluidMatter matter_of_look(uint index) {
   Look look = looks[index];
   return FluidMatter(look.color_displacement.rgb, look.extinction_scattering.rgb, look.extinction_scattering.a,
@@ -203,11 +260,12 @@ bool pixel(ivec2 texel, out vec4 value) {
   vec4 body = mirrored_body(eye, reflect(-to_eye, surface.normal));
   mirrored_light = mix(mirrored_light, body.rgb, body.a * (1.0 - smoothstep(0.15, 0.45, matter.roughness)));
 #endif
+  vec3 seen = mix(seen_behind(behind.texel), studio(mat3(world_from_eye) * -to_eye * vec3(1.0, -1.0, 1.0)), far.by_floor);
+  Lens lens = lens_here(eye, surface.normal, inside, matter.refraction, thickness, scene, back, middle);
   FluidLight lit = FluidLight(key_light.rgb * light, ambient_light(world_n) * open_sky(eye, surface.normal, texel, taps),
-                              mirrored_light,
-                              mix(seen_behind(behind.texel),
-                                  studio(mat3(world_from_eye) * -to_eye * vec3(1.0, -1.0, 1.0)), far.by_floor));
-  value = vec4(fluid_radiance(matter, point, lit, surface.whole), 0.0);
+                              mirrored_light, mix(seen, lens.light, lens.share));
+  // Against air a rim is the fluid's own.
+  value = vec4(fluid_radiance(matter, point, lit, max(surface.whole, lens.share)), 0.0);
   return true;
 }
 #include "pixel_main.glsl"

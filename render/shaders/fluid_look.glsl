@@ -150,3 +150,20 @@ SHARED vec3 seen_place(vec3 here, vec3 way, vec3 normal, float refraction, float
   vec3 out_at = here + inside * (depth_in / max(-inside.z, 0.25f));
   return out_at + way * (depth_behind / max(-way.z, 0.25f));
 }
+
+// The outer normal (unit, eye axes) of the far side of fluid that is free of bodies, from the near side's and from how the way
+// through it grows along the picture's axes, m/m: a ball's is its near side's mirrored, a sheet's its near side's turned round.
+const float kSteepest = 3.0f;
+SHARED vec3 far_normal(vec3 normal, vec2 growth) {
+  vec2 slope = vec2(normal.x, normal.y) / max(normal.z, 0.2f) + growth;
+  slope *= min(1.0f, kSteepest / max(length(slope), 1.0e-6f));
+  return normalize(vec3(-slope.x, -slope.y, -1.0f));
+}
+
+// Where light that comes from inside goes on, unit: out through the far side (`outward`, its normal), or off it where all of it is
+// mirrored.
+SHARED vec3 leaving_way(vec3 inside, vec3 outward, float refraction) {
+  vec3 facing = dot(inside, outward) < 0.0f ? -outward : outward;
+  vec3 out_way = refract(inside, -facing, refraction);
+  return dot(out_way, out_way) > 0.5f ? out_way : reflect(inside, facing);
+}

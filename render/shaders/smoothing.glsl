@@ -3,13 +3,14 @@
 const float kSmoothingShare = 0.9f;  // of the way to the mean (their λ)
 const float kSmoothingFlat = 0.22f;  // of the reach: from a flat surface's particles to their mean
 
-// Of ellipsoids, in particle radii. Along a flat surface, and in what is round: a drop, or a particle inside that shows through
-// a gap; the least that an ellipsoid is thick, which is what a sheet of one layer has.
+// Of ellipsoids, in particle radii. Along a flat surface, and in what is round: a particle inside that shows through a gap; a particle
+// alone is the ball of its volume; the least that an ellipsoid is thick, which is what a sheet of one layer has.
 const float kEllipsoidAlong = 2.4f;
 const float kEllipsoidRound = 1.2f;
 const float kEllipsoidThin = 0.9f;
 const float kFullVariance = 0.15f;  // of the reach squared: a neighbourhood's variance where it is full
 const float kFewNeighbours = 4.0f;  // in sum of weights, itself counting as one
+const float kAccompanied = 2.0f;
 
 // Weighted moments of the ways to a particle's neighbours, itself among them. m
 struct Neighbourhood {
@@ -36,7 +37,8 @@ SHARED vec3 smoothing_step(Neighbourhood n, float reach) {
 
 // m². Radii go with the variances, as theirs do; so no axes have to be found.
 SHARED mat3 smoothing_ellipsoid(Neighbourhood n, float reach, float radius) {
-  float ball = kEllipsoidRound * kEllipsoidRound * radius * radius;
+  float round = mix(1.0f, kEllipsoidRound, smoothstep(1.0f, kAccompanied, n.weights));
+  float ball = round * round * radius * radius;
   if (n.weights < kFewNeighbours) return mat3(ball);
   vec3 mean = n.sum / n.weights;
   float scale = 1.0f / (kFullVariance * reach * reach);

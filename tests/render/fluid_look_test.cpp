@@ -177,5 +177,38 @@ TEST(FluidLook, ASlabShiftsWhatIsBehindBySnellsLaw) {
             vec3(0.0f, 0.0f, -1.1f));
 }
 
+TEST(FluidLook, ABallsFarSideIsItsNearSidesMirrorImage) {
+  for (const float degrees : {0.0f, 20.0f, 45.0f, 65.0f}) {
+    const float turned = glm::radians(degrees);
+    const vec3 near_side(std::sin(turned), 0.0f, std::cos(turned));
+    // Its chord is 2R cos, across it one is R sin off the middle.
+    const vec3 far_side = far_normal(near_side, vec2(-2.0f * std::tan(turned), 0.0f));
+    EXPECT_NEAR(far_side.x, near_side.x, 1e-5f) << degrees;
+    EXPECT_NEAR(far_side.z, -near_side.z, 1e-5f) << degrees;
+  }
+}
+
+TEST(FluidLook, ThroughASheetLightGoesOnAsItCameThroughAPrismBySnellsLaw) {
+  const vec3 way(0.0f, 0.0f, -1.0f);
+  const float index = 1.33f;
+  for (const float degrees : {0.0f, 20.0f, 45.0f}) {
+    const float turned = glm::radians(degrees);
+    const vec3 normal(std::sin(turned), 0.0f, std::cos(turned));
+    const vec3 inside = refract(way, normal, 1.0f / index);
+    const vec3 through_sheet = leaving_way(inside, far_normal(normal, vec2(0.0f)), index);
+    EXPECT_NEAR(through_sheet.x, 0.0f, 1e-5f) << degrees;
+    EXPECT_NEAR(through_sheet.z, -1.0f, 1e-5f) << degrees;
+    // Its far side across the line of sight: it meets that at θ - θ', whose sine grows by the index.
+    const float meets = turned - std::asin(std::sin(turned) / index);
+    const vec3 through_prism = leaving_way(inside, vec3(0.0f, 0.0f, -1.0f), index);
+    EXPECT_NEAR(through_prism.x, -index * std::sin(meets), 1e-5f) << degrees;
+  }
+  // So flat on the far side that all of it is mirrored there.
+  const vec3 flat = glm::normalize(vec3(1.0f, 0.0f, -0.5f));
+  const vec3 mirrored = leaving_way(flat, vec3(0.0f, 0.0f, -1.0f), index);
+  EXPECT_NEAR(mirrored.x, flat.x, 1e-6f);
+  EXPECT_NEAR(mirrored.z, -flat.z, 1e-6f);
+}
+
 }  // namespace
 }  // namespace slosh::shader

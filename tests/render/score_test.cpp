@@ -267,7 +267,8 @@ TEST(SmoothCenters, AFlatSurfaceStaysItsNoiseGoesAndADropStays) {
   EXPECT_NEAR(mean_after, mean_before, 0.35 * spacing) << "the surface stays";
   EXPECT_LT(after2 / count - mean_after * mean_after, 0.5 * (before2 / count - mean_before * mean_before));
   EXPECT_NEAR(spheres.back().z, 0.3f - 1.0f, 1e-5f) << "a particle alone stays";
-  EXPECT_NEAR(splats.shapes.back().depth_radius, 1.2f * frame.particle_radius, 1e-6f) << "and is a ball";
+  EXPECT_NEAR(splats.shapes.back().depth_radius, frame.particle_radius, 1e-6f)
+      << "and is the ball of its volume";
   // On the flat surface ellipsoids lie flat in it.
   for (std::size_t i = 0; i + 1 < points.size(); ++i) {
     const glm::vec3& p = points[i];
