@@ -1,6 +1,8 @@
 #include "render/renderer_parts.h"
 
 #include <algorithm>
+#include <cmath>
+#include <iterator>
 #include <utility>
 
 #include "render/passes/window_part.h"
@@ -161,7 +163,11 @@ bool Renderer::Parts::draw_caustics(const Targets& into) {
 
 bool Renderer::Parts::prepare_fluid(bool chords) {
   prepare_splats(frame, options, splats);
-  if (chords) splats.all = splats.spheres;
+  if (chords) {
+    splats.all.clear();
+    std::ranges::copy_if(splats.spheres, std::back_inserter(splats.all),
+                         [](const glm::vec4& sphere) { return sphere.w == std::floor(sphere.w); });
+  }
   if (fast) leave_out_hidden(frame, options, splats);
   if (splats.empty()) return false;
   if (options.surface == Surface::kOurs) {

@@ -10,6 +10,7 @@
 #include "render/gl/objects.h"
 #include "render/gl/pixel_program.h"
 #include "render/passes/arrow_pass.h"
+#include "render/passes/bridges.h"
 #include "render/passes/caustics_pass.h"
 #include "render/passes/display_pass.h"
 #include "render/passes/far_light.h"
@@ -59,6 +60,7 @@ struct Renderer::Parts {
   std::array<Picture, 2> pictures;  ///< of the views drawn together last
   Targets& targets = pictures[0].targets;
   Splats splats;
+  Bridges bridges;
   SmoothCenters centers;
   std::optional<ParticlesOnGpu> particles;  ///< for compute
   FarLight far_light;

@@ -1,6 +1,7 @@
 #include "render/passes/mixing_pass.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 
 #include "render/passes/frame_block.h"
@@ -18,7 +19,7 @@ constexpr GLuint kSharesUnit = 12;
 int mixing_layers(const Frame& frame, const Splats& splats) {
   if (frame.fluids.size() < 2 || splats.empty()) return 0;
   const auto [least, most] = std::ranges::minmax(splats.spheres, {}, &glm::vec4::w);
-  return least.w == most.w ? 0 : 1 + static_cast<int>(most.w) / 4;
+  return std::floor(least.w) == std::floor(most.w) ? 0 : 1 + static_cast<int>(most.w) / 4;
 }
 
 int mixing_layers(const Frame& frame) {

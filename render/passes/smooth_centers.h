@@ -3,13 +3,12 @@
 // CPU; no GL here.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <glm/glm.hpp>
-#include <span>
 #include <vector>
 
 #include "render/frame.h"
+#include "render/passes/particle_cells.h"
 #include "render/passes/splats.h"
 
 namespace slosh {
@@ -33,23 +32,14 @@ class SmoothCenters {
     glm::vec3 center{0.0f};
     glm::mat3 ellipsoid{0.0f};
   };
-  /// Chooses lowest_ and cells_ for the first `count` particles.
-  void fit_cells(const Frame& frame, std::size_t count);
-  glm::ivec3 cell_of(const glm::vec3& at) const;
-  std::size_t row_of(int y, int z) const;
   Smoothed smooth(const glm::vec3& at, float radius) const;
 
   static constexpr float kReach =
       4.0f;  ///< particle radii, 2.5 spacings: some 60 neighbours inside the fluid
 
-  float reach_ = 1.0f;
-  glm::ivec3 lowest_{0};  // cells; who is outside counts as in the nearest
-  glm::ivec3 cells_{1};
-  std::vector<std::uint32_t> begin_;      // a cell each, x fastest, and the end
-  std::array<std::vector<float>, 3> at_;  // sorted by cell: x, y, z, each with room behind to read on
-  std::vector<Smoothed> smoothed_;        // a particle each, where known_
+  ParticleCells cells_;
+  std::vector<Smoothed> smoothed_;  // a particle each, where known_
   std::vector<std::uint8_t> known_;
-  std::vector<std::uint32_t> cell_;  // scratch
 };
 
 }  // namespace slosh

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "render/passes/frame_block.h"
+#include "render/passes/particle_cells.h"
 #include "render/shader_math.h"
 
 namespace slosh {
@@ -83,8 +84,8 @@ void prepare_splats(const Frame& frame, const RenderOptions& options, Splats& ou
   const glm::vec2 half_picture = 0.5f * glm::vec2(options.width, options.height);
   TileGrid tiles(options.width, options.height);
   for (std::size_t i = 0; i < count; ++i) {
-    const std::uint8_t fluid = frame.particle_fluid[i];
-    if (fluid >= fluids) continue;
+    const FluidSample sample = fluid_sample(frame.particle_fluid[i]);
+    if (sample.fluid >= fluids) continue;
     const glm::vec3 eye(frame.view.view * glm::vec4(frame.particles[i], 1.0f));
     const float depth = -eye.z;
     // Written so that a NaN fails each comparison.
@@ -92,7 +93,7 @@ void prepare_splats(const Frame& frame, const RenderOptions& options, Splats& ou
     const glm::vec2 center = glm::vec2(eye) * scale / depth - shift;
     const glm::vec2 reach = glm::abs(radius * scale / depth);
     if (!(std::abs(center.x) < 1.0f + reach.x && std::abs(center.y) < 1.0f + reach.y)) continue;
-    out.spheres.emplace_back(eye, static_cast<float>(fluid));
+    out.spheres.emplace_back(eye, sample.index());
     out.particles.push_back(static_cast<std::uint32_t>(i));
     const glm::vec2 low = glm::max((center - reach + 1.0f) * half_picture, glm::vec2(0.0f));
     tiles.touch(low, glm::min((center + reach + 1.0f) * half_picture, 2.0f * half_picture));

