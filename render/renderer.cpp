@@ -72,7 +72,7 @@ void Renderer::prepare(const Frame& frame, std::span<const View> views) {
   p.times.clear();
   p.frame = frame;
   p.offered_on_gpu = p.offered_on_gpu || frame.on_gpu;
-  if (p.options.surface == Surface::kOurs && !(p.particles && p.particles->reads_in_place(frame)))
+  if (p.options.bridges && p.options.surface == Surface::kOurs && !p.compute)
     p.run("bridges", [&] { p.bridges.add(p.frame); });
   p.shadow = {};
   p.is_stretched = false;

@@ -78,8 +78,10 @@ struct RenderOptions {
                                  ///< picture shows them (kFull); needs fresnel and lit_fluid
   bool caustics = false;  ///< beyond the paper: the fluid's surface focuses the light on what lies below, as
                           ///< far as the picture shows both (kFull); needs lit_fluid and shadow_size > 0
-  bool layers = true;  ///< beyond the paper: layers of fluid with air between count each by itself; not with
-                       ///< Surface::kPaper
+  bool layers = true;   ///< beyond the paper: layers of fluid with air between count each by itself; not with
+                        ///< Surface::kPaper
+  bool bridges = true;  ///< beyond the paper: gaps between few particles are closed (passes/bridges.h); where
+                        ///< a CPU draws, with Surface::kOurs
 
   bool soft_mixing =
       true;  ///< beyond the paper: where fluids meet, their looks go over into each other within some four

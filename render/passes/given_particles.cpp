@@ -29,11 +29,12 @@ void GivenParticles::hold(std::shared_ptr<const SharedParticles> particles) {
 
 void GivenParticles::bind(const Frame& frame, std::size_t count, GLuint places, GLuint fluids) {
   hold(nullptr);
-  shared_ = reads_in_place(frame, count);
+  const SharedParticles* on_gpu = frame.on_gpu.get();
+  shared_ = on_gpu && on_gpu->count >= count && open(*on_gpu);
   if (shared_) {
     held_[last_].particles = frame.on_gpu;
-    memory_->bind(places, frame.on_gpu->positions, count * sizeof(glm::vec3));
-    memory_->bind(fluids, frame.on_gpu->fluids, count);
+    memory_->bind(places, on_gpu->positions, count * sizeof(glm::vec3));
+    memory_->bind(fluids, on_gpu->fluids, count);
     return;
   }
   places_.upload(std::as_bytes(frame.particles.first(count)));

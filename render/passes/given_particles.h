@@ -16,10 +16,6 @@ namespace slosh {
 
 class GivenParticles {
  public:
-  /// Whether bind() will read memory that the frame shares, in place.
-  bool reads_in_place(const Frame& frame, std::size_t count) {
-    return frame.on_gpu && frame.on_gpu->count >= count && open(*frame.on_gpu);
-  }
   /// Binds the first `count` places and fluids of the frame (shaders/particles.comp). done() after they are
   /// read.
   void bind(const Frame& frame, std::size_t count, GLuint places, GLuint fluids);

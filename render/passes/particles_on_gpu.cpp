@@ -116,9 +116,9 @@ bool ParticlesOnGpu::taken_are(const Frame& frame) const {
   for (std::size_t i = 0; i < count_; ++i) {
     const glm::vec3& at = frame.particles[i];
     const bool finite = std::isfinite(at.x) && std::isfinite(at.y) && std::isfinite(at.z);
-    const FluidSample sample = fluid_sample(frame.particle_fluid[i]);
-    const bool drawn = sample.fluid < fluids && finite;
-    const glm::vec4 wanted = drawn ? glm::vec4(at, sample.index()) : glm::vec4(0.0f, 0.0f, 0.0f, -1.0f);
+    const bool drawn = frame.particle_fluid[i] < fluids && finite;
+    const glm::vec4 wanted =
+        drawn ? glm::vec4(at, frame.particle_fluid[i]) : glm::vec4(0.0f, 0.0f, 0.0f, -1.0f);
     if (taken[i] != wanted) return false;
   }
   return true;

@@ -3,7 +3,6 @@
 // out is the same each time.
 #pragma once
 
-#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -30,10 +29,6 @@ class ParticlesOnGpu {
   /// Errors carry the driver's log.
   static Result<ParticlesOnGpu> create();
 
-  /// Whether take() will read the frame's particles where another program has them on the GPU.
-  bool reads_in_place(const Frame& frame) {
-    return given_.reads_in_place(frame, std::min(frame.particles.size(), frame.particle_fluid.size()));
-  }
   /// Takes the frame's particles. `moves`: they are counted into cells, to be sorted and smoothed.
   void take(const Frame& frame, bool moves);
   /// How many steps are left until they are sorted and their neighbours' means and ellipsoids are found. Of

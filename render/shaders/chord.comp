@@ -10,7 +10,7 @@ uniform ivec2 size;
 uniform int count;
 void draw_splat(int index) {
   vec4 ball = splats[index];
-  if (ball.w < 0.0 || fract(ball.w) > 0.0) return;
+  if (ball.w < 0.0) return;
   ball.xyz = eye_of(ball.xyz);
   if (!in_view(ball, ball.xyz)) return;
   SplatPlace place = splat_place(ball.xyz);

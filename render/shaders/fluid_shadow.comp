@@ -10,7 +10,7 @@ uniform int sums_a_texel;  // 3, or 1 where all channels dim alike
 uniform int stride;  // particles that one stands for
 void draw_splat(int index) {
   vec4 particle = particles[index * stride];
-  if (particle.w < 0.0 || fract(particle.w) > 0.0) return;
+  if (particle.w < 0.0) return;
   vec4 in_clip = clip_from_world * vec4(particle.xyz, 1.0);
   if (any(greaterThan(abs(in_clip.xy), vec2(1.0)))) return;  // as points are clipped
   vec4 optical = dimming_of(in_clip, particle.w);

@@ -26,11 +26,8 @@ void main() {
   if (index >= count) return;
   vec3 at = vec3(own[3 * local], own[3 * local + 1], own[3 * local + 2]);
   uint fluid = fluid_indices[index >> 2] >> (8 * (index & 3)) & 255u;
-  // A sample between particles (passes/bridges.h) is half an index on.
-  bool between = fluid >= 128u && fluid != 255u;
-  if (between) fluid -= 128u;
   bool drawn = fluid < uint(fluids) && !any(isnan(at)) && !any(isinf(at));
-  particles[index] = drawn ? vec4(at, float(fluid) + (between ? 0.5 : 0.0)) : vec4(0.0, 0.0, 0.0, -1.0);
+  particles[index] = drawn ? vec4(at, float(fluid)) : vec4(0.0, 0.0, 0.0, -1.0);
 #ifdef CELLS
   if (!drawn) return;
   ivec3 cell = cell_of(at, reach);

@@ -23,6 +23,7 @@ struct Drawn {
 template <class Fill>
 Drawn draw(Context& context, RenderOptions options, PixelPasses way, int particles, Fill&& fill) {
   options.pixel_passes = way;
+  options.bridges = false;  // fragments' alone
   auto made = Renderer::create(context, options);
   EXPECT_TRUE(made) << made.error().text();
   Renderer& renderer = *made.value();
