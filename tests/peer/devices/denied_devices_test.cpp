@@ -27,18 +27,12 @@ using test::contains;
 class DeniedDevices : public ::testing::Test {
  protected:
   void SetUp() override {
-    const char* const path = std::getenv("PATH");
-    path_before_ = path != nullptr ? path : "";
     std::filesystem::create_directories(bin_);
     std::filesystem::create_directories(rules_);
     // By who owns it: nobody but with root's rights may write there.
     chmod(rules_.c_str(), 0555);
-    setenv("PATH", bin_.c_str(), 1);
   }
-  void TearDown() override {
-    chmod(rules_.c_str(), 0755);
-    setenv("PATH", path_before_.c_str(), 1);
-  }
+  void TearDown() override { chmod(rules_.c_str(), 0755); }
   /// In the made-up machine nobody has rights to `node` from now on.
   void deny(const std::string& node) {
     gchar* const root = umockdev_testbed_get_root_dir(machine_.testbed());
@@ -84,9 +78,9 @@ class DeniedDevices : public ::testing::Test {
   const std::filesystem::path rules_ = folder_.path() / "rules.d";
   const std::filesystem::path rule_ = rules_ / "70-slosh.rules";
   const std::filesystem::path log_ = folder_.path() / "sudo.log";
+  const test::SetVariable path_{"PATH", bin_};
   test::MockedMachine machine_;
   std::string denied_;
-  std::string path_before_;
 };
 
 TEST_F(DeniedDevices, ASpaceMouseIsListedWithTheRuleThatMendsIt) {

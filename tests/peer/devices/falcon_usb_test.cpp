@@ -29,7 +29,6 @@ class FalconUsb : public ::testing::Test {
  protected:
   void SetUp() override {
     std::filesystem::create_directories(folder_.path() / "slosh" / "devices");
-    setenv("XDG_CONFIG_HOME", folder_.path().c_str(), 1);
     falcon_ = fresh();
     std::ofstream(folder_.path() / "firmware.bin", std::ios::binary)
         .write(reinterpret_cast<const char*>(falcon_.firmware.data()), 7357);
@@ -47,6 +46,7 @@ class FalconUsb : public ::testing::Test {
   static std::array<int, 3> motors_of(const FalconPacket& packet) { return parse_falcon(packet)->counts; }
 
   test::OwnFolder folder_;
+  const test::SetVariable config_{"XDG_CONFIG_HOME", folder_.path()};
   test::MockedMachine machine_;
   FakeFalcon falcon_;
 };

@@ -21,10 +21,7 @@ using test::MockedMachine;
 
 class Gamepad : public ::testing::Test {
  protected:
-  void SetUp() override {
-    std::filesystem::create_directories(settings_ / "slosh" / "devices");
-    setenv("XDG_CONFIG_HOME", settings_.c_str(), 1);
-  }
+  void SetUp() override { std::filesystem::create_directories(settings_ / "slosh" / "devices"); }
   /// A millisecond a look, so that a busy machine changes nothing.
   std::function<std::int64_t()> clock() {
     return [this] { return now_ns_ += 1'000'000; };
@@ -43,7 +40,8 @@ class Gamepad : public ::testing::Test {
   }
 
   test::OwnFolder folder_;
-  std::filesystem::path settings_ = folder_.path() / "config";
+  const std::filesystem::path settings_ = folder_.path() / "config";
+  const test::SetVariable config_{"XDG_CONFIG_HOME", settings_};
   std::int64_t now_ns_ = 0;
 };
 

@@ -35,10 +35,7 @@ std::vector<std::uint8_t> axes(std::uint8_t number, const std::vector<int>& coun
 
 class SpaceMouseHid : public ::testing::Test {
  protected:
-  void SetUp() override {
-    std::filesystem::create_directories(settings_ / "slosh" / "devices");
-    setenv("XDG_CONFIG_HOME", settings_.c_str(), 1);
-  }
+  void SetUp() override { std::filesystem::create_directories(settings_ / "slosh" / "devices"); }
   void write_settings(const std::string& name, const std::string& text) {
     std::ofstream(settings_ / "slosh" / "devices" / name) << text;
   }
@@ -59,9 +56,10 @@ class SpaceMouseHid : public ::testing::Test {
     return [this] { return now_ns_ += 1'000'000; };
   }
 
-  MockedMachine machine_;
   test::OwnFolder own_;
   const std::filesystem::path settings_ = own_.path();
+  const test::SetVariable config_{"XDG_CONFIG_HOME", settings_};
+  MockedMachine machine_;
   std::int64_t now_ns_ = 1'000'000'000;
 };
 
