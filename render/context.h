@@ -43,6 +43,9 @@ class Context {
   /// True where a CPU draws (llvmpipe, softpipe, swrast).
   bool is_software() const { return is_software_; }
 
+  /// Where a button went down in the last poll, in the window's coordinates; nothing where none did.
+  virtual std::optional<glm::dvec2> pressed_at() const { return std::nullopt; }
+
   /// The GLFWwindow behind it, for this room's HUD; null without a window.
   virtual void* native_window() const { return nullptr; }
 

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <array>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -35,6 +36,9 @@ constexpr auto kKeyOfGlfw = std::to_array<std::pair<int, Key>>({
     {GLFW_KEY_RIGHT_ALT, Key::kAlt},
 });
 
+/// In the order of MouseButton.
+constexpr std::array kButtons{GLFW_MOUSE_BUTTON_LEFT, GLFW_MOUSE_BUTTON_RIGHT, GLFW_MOUSE_BUTTON_MIDDLE};
+
 constexpr std::size_t index_of(Key key) {
   return static_cast<std::size_t>(key);
 }
@@ -56,6 +60,14 @@ class GlfwContext final : public Context {
       auto* self = static_cast<GlfwContext*>(glfwGetWindowUserPointer(w));
       self->scroll_ += glm::vec2(x, y);
     });
+    // GLFW knows where the pointer is, not where it was when a button went down.
+    glfwSetCursorPosCallback(window_, [](GLFWwindow* w, double x, double y) {
+      static_cast<GlfwContext*>(glfwGetWindowUserPointer(w))->pointer_ = {x, y};
+    });
+    glfwSetMouseButtonCallback(window_, [](GLFWwindow* w, int button, int action, int) {
+      if (action == GLFW_PRESS) static_cast<GlfwContext*>(glfwGetWindowUserPointer(w))->take_press(button);
+    });
+    glfwGetCursorPos(window_, &pointer_.x, &pointer_.y);
     glfwSetKeyCallback(window_, [](GLFWwindow* w, int key, int, int action, int) {
       static_cast<GlfwContext*>(glfwGetWindowUserPointer(w))->take_key(key, action);
     });
@@ -79,10 +91,13 @@ class GlfwContext final : public Context {
   void swap() override { glfwSwapBuffers(window_); }
   void follow_screen(bool wait) override { glfwSwapInterval(wait ? 1 : 0); }
   void* native_window() const override { return window_; }
+  std::optional<glm::dvec2> pressed_at() const override { return pressed_at_; }
 
   const InputState& poll() override {
     scroll_ = glm::vec2(0.0f);
     input_.presses.clear();
+    pressed_at_.reset();
+    pressed_.fill(false);
     glfwPollEvents();
     input_.scroll = scroll_;
     take_mouse();
@@ -96,13 +111,14 @@ class GlfwContext final : public Context {
 
  private:
   void take_mouse() {
-    double x = 0.0;
-    double y = 0.0;
-    glfwGetCursorPos(window_, &x, &y);
+    glm::dvec2 pointer(0.0);
+    glfwGetCursorPos(window_, &pointer.x, &pointer.y);
+    // A drag begins where its button went down; what the pointer went since is of the next poll.
+    pointer = pressed_at_.value_or(pointer);
     glm::ivec2 window_size(1);
     glfwGetWindowSize(window_, &window_size.x, &window_size.y);
     const glm::vec2 scale = glm::vec2(framebuffer_size()) / glm::vec2(glm::max(window_size, glm::ivec2(1)));
-    const glm::vec2 mouse = glm::vec2(x, y) * scale;
+    const glm::vec2 mouse = glm::vec2(pointer) * scale;
     // Where the pointer goes outside (to another window, and back in elsewhere) is no business of ours,
     // unless it was dragged there.
     const bool dragging = std::any_of(input_.buttons.begin(), input_.buttons.end(), [](bool b) { return b; });
@@ -110,10 +126,14 @@ class GlfwContext final : public Context {
     input_.mouse_delta = mouse_known_ && here ? mouse - input_.mouse : glm::vec2(0.0f);
     input_.mouse = mouse;
     mouse_known_ = here;
-    constexpr std::array kButtons{GLFW_MOUSE_BUTTON_LEFT, GLFW_MOUSE_BUTTON_RIGHT, GLFW_MOUSE_BUTTON_MIDDLE};
-    for (std::size_t i = 0; i < kButtons.size(); ++i) {
-      input_.buttons[i] = glfwGetMouseButton(window_, kButtons[i]) == GLFW_PRESS;
-    }
+    // One that was let go in the same poll, too: a click on a slow picture.
+    for (std::size_t i = 0; i < kButtons.size(); ++i)
+      input_.buttons[i] = pressed_[i] || glfwGetMouseButton(window_, kButtons[i]) == GLFW_PRESS;
+  }
+
+  void take_press(int glfw_button) {
+    if (!pressed_at_) pressed_at_ = pointer_;
+    for (std::size_t i = 0; i < kButtons.size(); ++i) pressed_[i] |= kButtons[i] == glfw_button;
   }
 
   void take_key(int glfw_key, int action) {
@@ -138,6 +158,9 @@ class GlfwContext final : public Context {
   GLFWwindow* window_;
   InputState input_;
   glm::vec2 scroll_{0.0f};
+  glm::dvec2 pointer_{0.0};                      // of the newest event
+  std::optional<glm::dvec2> pressed_at_;         // in the last poll, the first press
+  std::array<bool, kButtons.size()> pressed_{};  // in the last poll
   bool mouse_known_ = false;
 };
 

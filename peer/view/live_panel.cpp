@@ -41,10 +41,12 @@ void LivePanel::slider(const Row& row, float width, double wall_seconds) {
   ImGui::SetNextItemWidth(width);
   const ImGuiSliderFlags flags =
       (row.logarithmic ? ImGuiSliderFlags_Logarithmic : 0) | ImGuiSliderFlags_AlwaysClamp;
-  const bool changed = ImGui::SliderFloat("##value", &s.shown, row.least, row.most, row.pattern, flags);
+  // Kept until it is sent: a mouse that stops within the pause sends what it stopped at, too.
+  s.unsent |= ImGui::SliderFloat("##value", &s.shown, row.least, row.most, row.pattern, flags);
   const bool ended = ImGui::IsItemDeactivatedAfterEdit();
   s.active = ImGui::IsItemActive();
-  if ((changed && wall_seconds - s.sent_at >= kSendEvery) || ended) {
+  if ((s.unsent && wall_seconds - s.sent_at >= kSendEvery) || ended) {
+    s.unsent = false;
     s.sent_at = wall_seconds;
     wishes_.push_back(row.wish);
     wishes_.back().value = static_cast<double>(s.shown);

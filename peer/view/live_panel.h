@@ -67,6 +67,7 @@ class LivePanel {
   struct Slider {
     float shown = 0.0f;
     bool active = false;
+    bool unsent = false;    // moved since sent_at
     double sent_at = -1.0;  // wall s
   };
   struct Row {

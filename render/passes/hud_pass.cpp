@@ -31,7 +31,7 @@ void set_hud_scale(float scale) {
 }
 
 Result<std::unique_ptr<HudPass>> HudPass::create(Context& context) {
-  std::unique_ptr<HudPass> pass(new HudPass());
+  std::unique_ptr<HudPass> pass(new HudPass(context));
   ImGuiContext* before = ImGui::GetCurrentContext();
   pass->imgui_ = ImGui::CreateContext();
   ImGui::SetCurrentContext(pass->imgui_);
@@ -86,6 +86,9 @@ void HudPass::draw(const std::function<void()>& hud, const gl::Framebuffer& targ
   ImGui_ImplOpenGL3_NewFrame();
   if (has_window_) {
     ImGui_ImplGlfw_NewFrame();
+    // Its backend asks where the pointer is now, and would press there.
+    if (const auto at = context_.pressed_at())
+      io.MousePos = ImVec2(static_cast<float>(at->x), static_cast<float>(at->y));
     // The picture is stretched to the window, and the HUD with it.
     if (io.DisplaySize.x > 0.0f && io.DisplaySize.y > 0.0f) {
       io.DisplayFramebufferScale = ImVec2(static_cast<float>(size.x) / io.DisplaySize.x,

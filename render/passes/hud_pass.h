@@ -17,6 +17,7 @@ int hud_font_pixels(float picture_height);
 /// Owns one Dear ImGui context. It stays the current one after draw, so that code outside may ask it things.
 class HudPass {
  public:
+  /// `context` lives as long as the pass.
   static Result<std::unique_ptr<HudPass>> create(Context& context);
   ~HudPass();
   HudPass(const HudPass&) = delete;
@@ -26,8 +27,9 @@ class HudPass {
   void draw(const std::function<void()>& hud, const gl::Framebuffer& target, glm::ivec2 size);
 
  private:
-  HudPass() = default;
+  explicit HudPass(Context& context) : context_(context) {}
   void fit_font();
+  Context& context_;
   ImGuiContext* imgui_ = nullptr;
   int font_pixels_ = 0;  ///< that the font's atlas was made for
   bool has_window_ = false;

@@ -32,15 +32,9 @@ TEST_F(WindowTest, AMousePoursTheDefaultBucket) {
 
   // On the bucket's front, below its rim: both hands at once.
   const glm::ivec2 bucket = pixel({0.0, 0.36, 0.09});
-  point(bucket);
-  display->act({"mousedown", "1"});
-  // What moves between two pictures is not of the drag yet when the press comes with it: on until it is
-  // there.
-  int moved = 0;
-  ASSERT_TRUE(comes([&] {
-    if (moved < 160) point(bucket + glm::ivec2(moved += 4, 0));
-    return newest(0).position.x > -0.143 + 0.05;
-  })) << "dragged to the right";
+  display->act({"mousemove", std::to_string(bucket.x), std::to_string(bucket.y), "mousedown", "1",
+                "mousemove_relative", "--", "160", "0"});
+  ASSERT_TRUE(comes([&] { return newest(0).position.x > -0.143 + 0.05; })) << "dragged to the right";
   display->act({"click", "--repeat", "24", "--delay", "30", "4"});
   EXPECT_TRUE(comes([&] { return glm::length(turn_of(newest(0))) > 1.6; }))
       << "24 notches of 4°: well beyond what the script tilts";
@@ -166,19 +160,10 @@ TEST_F(WindowTest, ASliderChangesTheWorldThatRuns) {
   }
   ASSERT_EQ(knobs.size(), 6u) << "pace, filter, gravity, viscosity of the water, stiffness of two hands";
   const glm::ivec2 gravity = knobs[2];
-  point(gravity);
-  display->act({"mousedown", "1"});
-  int moved = 0;
-  EXPECT_TRUE(comes([&] {
-    // Taken anew each time: a drag that the panel lost goes on.
-    if (moved < 150) {
-      display->act({"mouseup", "1"});
-      point(gravity - glm::ivec2(moved += 5, 0));
-      display->act({"mousedown", "1"});
-    }
-    return std::abs(weight()) < 1.0;
-  })) << weight()
-      << " N";
+  // Between two pictures, or over several: a drag begins where it was pressed, and arrives where it stops.
+  display->act({"mousemove", std::to_string(gravity.x), std::to_string(gravity.y), "mousedown", "1",
+                "mousemove_relative", "--", "-150", "0"});
+  EXPECT_TRUE(comes([&] { return std::abs(weight()) < 1.0; })) << weight() << " N";
   display->act({"mouseup", "1"});
   display->act({"key", "q"});
   EXPECT_EQ(slosh.wait().code, 0);
