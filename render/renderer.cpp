@@ -239,6 +239,10 @@ bool Renderer::reads_particles_on_gpu() const {
   return parts_->particles && parts_->particles->given().shared();
 }
 
+Quality Renderer::quality() const {
+  return parts_->fast ? Quality::kFast : Quality::kFull;
+}
+
 std::string Renderer::particles_refused() const {
   if (parts_->particles) return parts_->particles->given().refused();
   return parts_->offered_on_gpu ? "particles that lie on the GPU: the picture is not drawn by compute "

@@ -192,6 +192,8 @@ class Renderer : public MeshSink {
   /// Why particles that were offered there go through main memory, in words; empty where they do not, or were
   /// not.
   std::string particles_refused() const;
+  /// Quality::kAuto resolved: kFast or kFull.
+  Quality quality() const;
   /// What PixelPasses came to.
   bool on_compute() const;
   /// Takes effect at the next draw. Errors as create; the old options then stay.

@@ -242,6 +242,7 @@ struct Scene {
   double stiffness = 0.0;  ///< Eq 7's k = c², m²/s²; 0 = chosen by the plan from depth and gravity
   double tension = 0.0;    ///< share of Eq 7's negative pressure that is kept, 0–1 (sim/pressure/README.md)
   double duration = 10.0;  ///< s, of the scripted motion
+  double still = 0.0;      ///< s at which a film's final.png is taken; 0 = at its end. Not sent
   /// s of damped rest before the run (World::settle), 0–60; 0 = it starts as it is here.
   double settle = 0.0;
   /// s: above `settle` it goes on at most so long, until what hands feel is steady. Not sent: peers settle

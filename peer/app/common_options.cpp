@@ -55,9 +55,7 @@ void add_never_a_window_option(CLI::App& verb, const std::string& text) {
 
 void add_show_options(CLI::App& verb, ShowOptions& options, bool has_window) {
   if (has_window) verb.add_flag("--headless", options.headless, "No window, even with a display");
-  verb.add_option("--size", options.size,
-                  has_window ? "Picture in pixels, WxH (640x480 headless, 1280x720 in a window)"
-                             : "Picture in pixels, WxH (640x480)");
+  verb.add_option("--size", options.size, "Picture in pixels, WxH (1280x720)");
   verb.add_flag("--stereo", options.stereo,
                 "A film in both eyes, side by side, each of that size (a headset's films are so anyway)");
   verb.add_option("--fps", options.frames_per_second, "Pictures a second of the film")

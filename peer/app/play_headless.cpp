@@ -25,6 +25,7 @@ void fill_view(RunSummary& summary, const HeadlessView& view, const ViewOptions&
   const ViewReport& report = view.report();
   summary.rendered = true;
   summary.renderer = report.renderer;
+  summary.fast_picture = report.fast;
   summary.width = (options.stereo ? 2 : 1) * options.render.width;
   summary.height = options.render.height;
   summary.frames = report.frames;

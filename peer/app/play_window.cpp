@@ -237,6 +237,7 @@ Result<bool> show_in_window(const Stage& stage, const MakeRun& make_run, const S
   run.report(summary);
   summary.rendered = true;
   summary.renderer = context.value()->description() + where_particles_are_read(*renderer.value());
+  summary.fast_picture = renderer.value()->quality() == Quality::kFast;
   const RenderOptions& last = renderer.value()->options();
   const glm::ivec2 shown =
       headset ? glm::ivec2(last.width, last.height) : context.value()->framebuffer_size();

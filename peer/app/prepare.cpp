@@ -153,9 +153,8 @@ Result<bool> set_stage(const ShowOptions& options, bool headless, Stage& stage) 
   if (options.render_gpu >= 0 && !headless)
     return Error{"--render-gpu", "is for films: a window is drawn by its display's GPU",
                  "Give --headless too, or choose the simulation's GPU with --sim-gpu"};
-  const Result<std::pair<int, int>> size = parse_size(!options.size.empty() ? options.size
-                                                      : headless            ? "640x480"
-                                                                            : "1280x720");
+  const Result<std::pair<int, int>> size =
+      parse_size(options.size.empty() ? std::string("1280x720") : options.size);
   if (!size) return size.error();
   std::tie(stage.width, stage.height) = size.value();
   stage.seconds = options.seconds > 0.0 ? options.seconds

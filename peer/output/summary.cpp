@@ -194,8 +194,13 @@ Json to_json(const RunSummary& s) {
   json["device_loop_us"]["missed"] = s.device_missed;
   json["device_loop_us"]["scheduler"] = s.device_scheduler;
   json["device_loop_us"]["memory_locked"] = s.device_memory_locked;
-  json["render"] = {{"on", s.rendered},        {"renderer", s.renderer}, {"width", s.width},
-                    {"height", s.height},      {"frames", s.frames},     {"dropped", s.frames_dropped},
+  json["render"] = {{"on", s.rendered},
+                    {"renderer", s.renderer},
+                    {"quality", s.fast_picture ? "fast" : "full"},
+                    {"width", s.width},
+                    {"height", s.height},
+                    {"frames", s.frames},
+                    {"dropped", s.frames_dropped},
                     {"ms", spread(s.frame_ms)}};
   json["status"] = status_words(s);
   if (!s.gone.empty()) json["gone"] = s.gone;
@@ -247,8 +252,8 @@ std::string in_words(const RunSummary& s) {
   }
   if (s.rendered) {
     text += format(
-        "%s pictures of %d × %d, %.0f ms each%s.\n", grouped(s.frames).c_str(), s.width, s.height,
-        s.frame_ms.p50,
+        "%s pictures of %d × %d in %s quality, %.0f ms each%s.\n", grouped(s.frames).c_str(), s.width,
+        s.height, s.fast_picture ? "fast" : "full", s.frame_ms.p50,
         s.frames_dropped == 0 ? "" : (std::string(", ") + grouped(s.frames_dropped) + " dropped").c_str());
   }
   text += left_words(s);

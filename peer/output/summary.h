@@ -86,6 +86,7 @@ struct RunSummary {
   bool device_memory_locked = false;
   bool rendered = false;
   std::string renderer;
+  bool fast_picture = false;  ///< Quality::kFast
   int width = 0, height = 0;
   std::uint64_t frames = 0;
   std::uint64_t frames_dropped = 0;

@@ -13,7 +13,7 @@ namespace slosh {
 namespace {
 
 constexpr float kHandRadius = 0.008f;       // m, the ball that marks a handle
-constexpr double kArrowLength = 0.22;       // of the view distance, for the largest force so far
+constexpr double kArrowLength = 0.15;       // of the view distance, for the largest force so far
 constexpr double kSmallestReference = 1.0;  // N: below it noise would be drawn large
 
 MeshLook look_of(const Material& m) {

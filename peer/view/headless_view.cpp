@@ -83,7 +83,7 @@ void HeadlessView::run(const Setup& setup) {
   RateLog& rates = setup.rates;
   setup.ready->set_value(true);
 
-  Image image;
+  Image image, still;
   bool recording = true;
   while (!queue.finished()) {
     const SnapshotPointer snapshot = queue.pop(std::chrono::milliseconds(100));
@@ -97,17 +97,21 @@ void HeadlessView::run(const Setup& setup) {
       painter.draw(*snapshot, now);
       image = renderer.read_back();
     }
+    if (still.rgba.empty() && setup.scene.still > 0.0 && snapshot->rigid.time >= setup.scene.still - 0.5 / options.frames_per_second)
+      still = image;
     report_.frame_time.add(to_seconds(steady_now_ns() - begin_ns));
     report_.frames += 1;
     if (recording && !video.value()->add(image)) recording = false;  // finish() below says why
     done_.store(report_.frames, std::memory_order_relaxed);
   }
   report_.renderer += where_particles_are_read(renderer);
+  report_.fast = renderer.quality() == Quality::kFast;
   report_.refused = renderer.particles_refused();
   const Result<bool> finished = video.value()->finish();
   if (!finished) report_.problem = finished.error().text();
   if (report_.frames > 0) {
-    const Result<std::filesystem::path> written = write_png(options.folder / "final.png", image);
+    const Result<std::filesystem::path> written =
+        write_png(options.folder / "final.png", still.rgba.empty() ? image : still);
     if (!written && report_.problem.empty()) report_.problem = written.error().text();
   }
   done();

@@ -22,7 +22,7 @@ struct ViewOptions {
   bool stereo = false;              ///< both eyes side by side, each of that size
   double frames_per_second = 30.0;  ///< of the film
   int gpu = -1;                     ///< as HeadlessOptions::gpu
-  std::filesystem::path folder;     ///< gets view.mp4 and final.png; must exist
+  std::filesystem::path folder;     ///< gets view.mp4 and final.png (Scene::still); must exist
 };
 
 /// What the viewer did; complete after wait().
@@ -30,6 +30,7 @@ struct ViewReport {
   std::uint64_t frames = 0;
   Histogram frame_time;  ///< drawing and reading back, s
   std::string renderer;
+  bool fast = false;    ///< Quality::kFast
   std::string refused;  ///< why the particles go through main memory, where a GPU steps them; else empty
   std::string problem;  ///< an error's text, empty when all went well
   std::vector<Error> left_out;  ///< of the scene's looks; there when start() returns

@@ -84,7 +84,7 @@ void append_arrow(const Arrow& arrow, float eye_distance, std::vector<ArrowVerte
   const glm::vec3 way = arrow.to - arrow.from;
   const float length = glm::length(way);
   if (!std::isfinite(length) || !std::isfinite(glm::dot(arrow.from, arrow.to)) || length < 1e-5f) return;
-  const float width = std::clamp(0.05f * length, 0.002f * eye_distance, 0.006f * eye_distance);
+  const float width = std::clamp(0.03f * length, 0.0015f * eye_distance, 0.0035f * eye_distance);
   const float head = std::min(5.0f * width, 0.6f * length);
 
   glm::mat3 axes;

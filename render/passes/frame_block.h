@@ -13,9 +13,9 @@ namespace slosh {
 /// The studio that every scene stands in. Scene-linear Rec.709.
 struct Studio {
   glm::vec3 key_light{3.6f, 3.4f, 3.15f};   ///< irradiance of the light on a surface that faces it
-  glm::vec3 sky{0.26f, 0.33f, 0.43f};       ///< radiance from straight above
-  glm::vec3 horizon{0.80f, 0.82f, 0.85f};   ///< from the side
-  glm::vec3 ground{0.12f, 0.125f, 0.135f};  ///< from below
+  glm::vec3 sky{0.40f, 0.44f, 0.50f};       ///< radiance from straight above
+  glm::vec3 horizon{0.84f, 0.80f, 0.74f};   ///< from the side
+  glm::vec3 ground{0.21f, 0.175f, 0.145f};  ///< from below
   glm::vec3 softbox{4.0f, 3.9f, 3.7f};      ///< radiance of the light as a mirror shows it
 };
 

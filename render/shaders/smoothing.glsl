@@ -10,6 +10,7 @@ const float kEllipsoidRound = 1.2f;
 const float kEllipsoidThin = 0.9f;
 const float kFullVariance = 0.15f;  // of the reach squared: a neighbourhood's variance where it is full
 const float kFewNeighbours = 4.0f;  // in sum of weights, itself counting as one
+/// Weights of neighbours from which a particle is as round as kEllipsoidRound says; below it is a ball of its volume.
 const float kAccompanied = 2.0f;
 
 // Weighted moments of the ways to a particle's neighbours, itself among them. m

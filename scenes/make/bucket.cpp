@@ -86,11 +86,12 @@ SceneWriter make_bucket() {
                       {"spacing_min_m", 0.006},
                       {"spacing_max_m", 0.012},
                       {"duration_s", kBucketDuration},
+                      {"still_s", 5.2},
                       {"settle_s", kSettle},
                       {"domain_min_m", list({-0.65, -0.20, -0.45})},
                       {"domain_max_m", list({0.65, 0.85, 0.45})}});
   add_table(writer, 1.0, 0.6);
-  const int red = writer.add_material("red enamel", {{0.55, 0.06, 0.05, 1.0}, 0.0, 0.35});
+  const int red = writer.add_material("red enamel", {{0.55, 0.06, 0.05, 1.0}, 0.0, 0.22});
   const int look = writer.add_material("water", {{0.10, 0.35, 0.55, 0.5}, 0.0, 0.1});
   const Pose start = bucket_pose(0.0);
   const int node = writer.add_node(
@@ -120,7 +121,7 @@ SceneWriter make_bucket() {
         side + "_motion", side + "_hand", [=](double t) { return compose(bucket_pose(t), grip); },
         kBucketDuration);
   }
-  writer.add_camera({0.36, 0.92, 0.84}, {-0.02, 0.26, 0.0}, 36.0);
+  writer.add_camera({0.30, 0.62, 1.02}, {0.03, 0.245, 0.0}, 33.0);
   return writer;
 }
 

@@ -3,6 +3,7 @@
 #include <glm/gtc/constants.hpp>
 
 #include "scenes/make/motion.h"
+#include "scenes/make/paints.h"
 #include "scenes/make/shipped.h"
 
 namespace slosh::make {
@@ -29,13 +30,18 @@ SceneWriter make_pool() {
                       {"spacing_min_m", 0.012},
                       {"spacing_max_m", 0.05},
                       {"duration_s", kPoolDuration},
+                      {"still_s", 2.5},
                       {"settle_s", kSettle},
                       {"domain_min_m", list({-0.85, -0.15, -0.85})},
                       {"domain_max_m", list({0.85, 1.0, 0.85})}});
-  const int tiles = writer.add_material("tiles", {{0.55, 0.72, 0.75, 1.0}, 0.0, 0.35});
+  Paint paint{.color = {1.0, 1.0, 1.0, 1.0}, .roughness = 0.25};
+  paint.base_color_map.image = writer.add_image("tiles", tile_picture());
+  const int tiles = writer.add_material("tiles", paint);
+  TriangleMesh basin = with_normals(tank(kInner, kPoolWall));
+  lay_flat(basin, kTiles);
   const int rubber = writer.add_material("yellow rubber", {{0.85, 0.55, 0.05, 1.0}, 0.0, 0.45});
   const int look = writer.add_material("water", {{0.10, 0.35, 0.55, 0.5}, 0.0, 0.1});
-  writer.add_node("pool", writer.add_mesh("pool", tank(kInner, kPoolWall), tiles), {},
+  writer.add_node("pool", writer.add_mesh("pool", basin, tiles), {},
                   {{"slosh", "body"}, {"motion", "fixed"}, {"viscosity_pa_s", 0.0}});
   const Solid fluid = box({-0.5 * kInner.x, kPoolWall, -0.5 * kInner.z},
                           {0.5 * kInner.x, kPoolWall + kPoolFluidDepth, 0.5 * kInner.z});
@@ -57,7 +63,7 @@ SceneWriter make_pool() {
                    {"device", 0}},
                   node);
   writer.add_hand("ball_motion", "ball_hand", ball_pose, kPoolDuration);
-  writer.add_camera({0.9, 1.35, 1.85}, {0.0, 0.15, 0.0}, 36.0);
+  writer.add_camera({0.62, 1.10, 1.62}, {0.0, 0.17, 0.0}, 34.0);
   return writer;
 }
 

@@ -85,6 +85,7 @@ SceneWriter make_pour() {
                       {"spacing_min_m", 0.006},
                       {"spacing_max_m", 0.012},
                       {"duration_s", kPourDuration},
+                      {"still_s", 2.2},
                       {"settle_s", kSettle},
                       {"domain_min_m", list({-0.45, -0.15, -0.35})},
                       {"domain_max_m", list({0.50, 0.75, 0.35})}});
@@ -111,7 +112,7 @@ SceneWriter make_pour() {
                    {"roughness", 0.4}});
   add_held(writer, "bowl", bowl_node, {{-0.13, kBowlRim - 0.014, 0.0}, {1.0, 0.0, 0.0, 0.0}}, 0, bowl_pose);
   add_held(writer, "pan", pan_node, {{0.17, 0.036, 0.0}, {1.0, 0.0, 0.0, 0.0}}, 1, pan_pose);
-  writer.add_camera({0.26, 0.74, 0.80}, {0.0, 0.20, 0.0}, 36.0);
+  writer.add_camera({0.20, 0.56, 0.80}, {0.02, 0.18, 0.0}, 34.0);
   return writer;
 }
 

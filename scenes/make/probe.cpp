@@ -26,12 +26,11 @@ SceneWriter make_probe() {
                       {"spacing_min_m", 0.005},
                       {"spacing_max_m", 0.012},
                       {"duration_s", kProbeDuration},
+                      {"still_s", 1.5},
                       {"settle_s", kSettle},
                       {"domain_min_m", list({-0.25, -0.15, -0.22})},
                       {"domain_max_m", list({0.25, 0.35, 0.22})}});
-  const int wood = writer.add_material("wood", {{0.32, 0.18, 0.09, 1.0}, 0.0, 0.55});
-  writer.add_node("table", writer.add_mesh("table", box({-0.25, -0.04, -0.2}, {0.25, 0.0, 0.2}), wood), {},
-                  {{"slosh", "picture"}});
+  add_table(writer, 0.5, 0.4, false);
   const int clear = writer.add_material("clear plastic", {{0.75, 0.82, 0.85, 0.30}, 0.0, 0.15});
   const int red = writer.add_material("red", {{0.80, 0.08, 0.05, 1.0}, 0.0, 0.4});
   const int look = writer.add_material("water", {{0.10, 0.35, 0.55, 0.5}, 0.0, 0.1});
@@ -56,7 +55,7 @@ SceneWriter make_probe() {
                    {"device", 0}},
                   node);
   writer.add_hand("probe_motion", "probe_hand", probe_pose, kProbeDuration);
-  writer.add_camera({0.22, 0.34, 0.46}, {0.0, 0.06, 0.0}, 34.0);
+  writer.add_camera({0.17, 0.25, 0.42}, {0.0, 0.05, 0.0}, 32.0);
   return writer;
 }
 

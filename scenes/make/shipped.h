@@ -18,8 +18,8 @@ SceneWriter make_spin();    ///< paper, section 6.4.3
 SceneWriter make_pool();    ///< paper, section 6.2
 SceneWriter make_probe();   ///< paper, section 3
 
-/// A fixed wooden slab, its top at y = 0.
-void add_table(SceneWriter& writer, double width, double depth, double thickness = 0.04);
+/// A wooden slab, its top at y = 0: a fixed body, or only looked at.
+void add_table(SceneWriter& writer, double width, double depth, bool solid = true);
 
 /// A list for `extras`.
 nlohmann::json list(const glm::dvec3& v);

@@ -45,13 +45,12 @@ SceneWriter make_spin() {
                       {"spacing_min_m", 0.006},
                       {"spacing_max_m", 0.012},
                       {"duration_s", kSpinDuration},
+                      {"still_s", 2.0},
                       {"settle_s", kSettle},
                       {"fluids", fluids},
                       {"domain_min_m", list({-0.65, -0.15, -0.25})},
                       {"domain_max_m", list({0.65, 0.40, 0.25})}});
-  const int wood = writer.add_material("wood", {{0.32, 0.18, 0.09, 1.0}, 0.0, 0.55});
-  writer.add_node("table", writer.add_mesh("table", box({-0.6, -0.04, -0.25}, {0.6, 0.0, 0.25}), wood), {},
-                  {{"slosh", "picture"}});
+  add_table(writer, 1.2, 0.5, false);
   const int clear = writer.add_material("glass", {{0.80, 0.90, 0.92, 0.25}, 0.0, 0.08});
   const int look = writer.add_material("syrup", {{0.70, 0.25, 0.04, 0.7}, 0.0, 0.1});
   const int glass_mesh = writer.add_mesh("glass", glass(), clear);
@@ -80,7 +79,7 @@ SceneWriter make_spin() {
     // The start takes 0.15 s: keys close enough to keep its shape.
     writer.add_hand("motion_" + number, "hand_" + number, pose_at, kSpinDuration, 120.0);
   }
-  writer.add_camera({-0.06, 0.62, 0.98}, {-0.06, 0.06, 0.0}, 38.0);
+  writer.add_camera({-0.10, 0.42, 1.02}, {0.0, 0.05, 0.0}, 32.0);
   return writer;
 }
 

@@ -68,6 +68,7 @@ SceneWriter make_spoon() {
                       {"spacing_min_m", 0.006},
                       {"spacing_max_m", 0.012},
                       {"duration_s", kSpoonDuration},
+                      {"still_s", 2.0},
                       {"settle_s", kSettle},
                       {"domain_min_m", list({-0.40, -0.15, -0.30})},
                       {"domain_max_m", list({0.40, 0.55, 0.30})}});
@@ -101,7 +102,7 @@ SceneWriter make_spoon() {
                   node);
   writer.add_hand(
       "spoon_motion", "spoon_hand", [=](double t) { return compose(spoon_pose(t), grip); }, kSpoonDuration);
-  writer.add_camera({0.30, 0.42, 0.58}, {0.0, 0.11, 0.0}, 36.0);
+  writer.add_camera({0.22, 0.34, 0.58}, {0.0, 0.11, 0.0}, 34.0);
   return writer;
 }
 

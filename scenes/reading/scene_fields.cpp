@@ -46,6 +46,7 @@ Problem read_scene_fields(Reading& reading) {
                     ", \"incompressible\" or \"paper\" (sim/pressure/README.md compares them)");
   }
   scene.duration = extras.number("duration_s", scene.duration, gltf::Range{0.0, 86400.0, true});
+  scene.still = extras.number("still_s", 0.0, gltf::Range{0.0, 86400.0});
   scene.settle = extras.number("settle_s", 0.0, gltf::Range{0.0, 60.0});
   scene.light_direction =
       glm::vec3(extras.vector("light_direction", glm::dvec3(scene.light_direction), gltf::Range{-1e3, 1e3}));

@@ -256,7 +256,7 @@ TEST(Verbs, EveryShippedSceneChecksAndPlans) {
     EXPECT_TRUE(contains(plan.out, "density")) << plan.out;
     for (const char* number :
          {"settles 1 s before the run", "m of fluid", "compresses the fluid by", "sound number",
-          "viscous number", "of fluid and", "MB", "a step          about", " on C", "carried out     "})
+          "viscous number", "of fluid and", "MB", "a step          about", " ms on C", "carried out     "})
       EXPECT_TRUE(contains(plan.out, number)) << number << " in " << plan.out;
   }
 }

@@ -81,6 +81,7 @@ class EdgePictures : public RenderTest {
     RenderOptions options = small();
     options.antialias = antialias;
     options.shadow_size = 0;
+    options.environment = even_room();
     auto renderer = make(options);
     MeshLook black;
     black.base_color = glm::vec3(0.0f);

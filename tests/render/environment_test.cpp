@@ -8,6 +8,7 @@
 #include <fstream>
 #include <glm/gtc/constants.hpp>
 
+#include "render/passes/frame_block.h"
 #include "render/shader_math.h"
 #include "tests/render/render_test.h"
 
@@ -114,23 +115,42 @@ TEST(LightProbe, AnEvenRoomIsEven) {
   for (std::size_t k = 1; k < 9; ++k) EXPECT_NEAR(probe.diffuse[k].y, 0.0f, 5e-3f) << k;
 }
 
+/// Irradiance / π on a surface of this normal, summed over directions of one solid angle each.
+template <class Radiance>
+glm::dvec3 integral(const glm::vec3& normal, Radiance radiance) {
+  glm::dvec3 sum(0.0);
+  constexpr int kRows = 128;
+  for (int y = 0; y < kRows; ++y) {
+    const double up = 1.0 - 2.0 * (y + 0.5) / kRows;  // rows of one area each
+    for (int x = 0; x < 2 * kRows; ++x) {
+      const double round = glm::pi<double>() * (x + 0.5) / kRows;
+      const double level = std::sqrt(1.0 - up * up);
+      const glm::vec3 way(level * std::sin(round), up, -level * std::cos(round));
+      sum += static_cast<double>(std::max(glm::dot(way, normal), 0.0f)) * glm::dvec3(radiance(way));
+    }
+  }
+  return sum * (4.0 / (2.0 * kRows * kRows));
+}
+
+TEST(Room, ItsAmbientLightIsTheIntegral) {
+  const Studio studio;
+  const shader::Room room{studio.sky, studio.horizon, studio.ground, studio.softbox, {0.0f, 1.0f, 0.0f}};
+  for (int k = 0; k < 200; ++k) {
+    const glm::vec3 normal =
+        glm::normalize(glm::vec3(std::sin(1.7f * k), std::cos(2.3f * k), std::sin(0.9f * k + 1.0f)));
+    const glm::dvec3 right =
+        integral(normal, [&](const glm::vec3& way) { return shader::room_radiance(room, way); });
+    const glm::vec3 fitted = shader::room_ambient(room, normal);
+    for (int c = 0; c < 3; ++c) EXPECT_NEAR(fitted[c], right[c], 0.1 * right[c]) << k << " channel " << c;
+  }
+}
+
 TEST(LightProbe, DiffuseLightIsTheIntegral) {
   const auto room = make_studio_environment();
   const LightProbe probe = make_light_probe(*room);
   for (const glm::vec3 normal : {glm::vec3(0, 1, 0), glm::vec3(0, -1, 0), glm::vec3(1, 0, 0),
                                  glm::vec3(0, 0, -1), glm::normalize(glm::vec3(1, 1, 1))}) {
-    glm::dvec3 sum(0.0);
-    constexpr int kRows = 128;
-    for (int y = 0; y < kRows; ++y) {
-      const double up = 1.0 - 2.0 * (y + 0.5) / kRows;  // rows of one area each
-      for (int x = 0; x < 2 * kRows; ++x) {
-        const double turn = glm::pi<double>() * (x + 0.5) / kRows;
-        const double side = std::sqrt(1.0 - up * up);
-        const glm::vec3 way(side * std::cos(turn), up, side * std::sin(turn));
-        sum += glm::dvec3(room->from(way)) * std::max(double{glm::dot(way, normal)}, 0.0) * 4.0 /
-               (2.0 * kRows * kRows);
-      }
-    }
+    const glm::dvec3 sum = integral(normal, [&](const glm::vec3& way) { return room->from(way); });
     const float b[9] = {0.282095f,
                         0.488603f * normal.y,
                         0.488603f * normal.z,

@@ -94,7 +94,7 @@ TEST_F(LightTest, OcclusionDarkensACreaseAndLittleElse) {
   float lowest = 1.0f;
   for (int y = 0; y < kHeight; ++y)
     lowest = std::min(lowest, with.at(kWidth / 2, y, 1) / without.at(kWidth / 2, y, 1));
-  EXPECT_LT(lowest, 0.93f);
+  EXPECT_LT(lowest, 0.95f);
   EXPECT_GT(lowest, 0.3f);
   const int open = kHeight - 12;  // the floor far from the wall
   EXPECT_NEAR(with.at(kWidth / 2, open, 1) / without.at(kWidth / 2, open, 1), 1.0f, 0.03f);

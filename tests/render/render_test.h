@@ -5,6 +5,7 @@
 
 #include <memory>
 
+#include "render/environment.h"
 #include "render/renderer.h"
 #include "tests/render/scene_kit.h"
 
@@ -30,6 +31,10 @@ class RenderTest : public ::testing::Test {
     options.height = kHeight;
     options.shadow_size = 256;
     return options;
+  }
+  /// As bright from every side: nothing of a room is seen in what mirrors or bends light.
+  static std::shared_ptr<const Environment> even_room() {
+    return std::make_shared<Environment>(Environment{4, 2, std::vector<glm::vec3>(8, glm::vec3(0.5f))});
   }
   /// Eq 15 and nothing else.
   static RenderOptions paper() {
