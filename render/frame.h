@@ -5,6 +5,7 @@
 #include <functional>
 #include <glm/glm.hpp>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -114,6 +115,12 @@ struct FoamPoint {
   float opacity = 1.0f;      ///< 0–1
 };
 
+/// A point of a body's surface.
+struct WallPoint {
+  glm::vec3 at{0.0f};      ///< m, world
+  glm::vec3 normal{0.0f};  ///< unit, out of the body
+};
+
 struct Frame {
   View view;
   glm::vec3 light_direction{-0.4f, -1.0f, -0.35f};  ///< the way the light travels
@@ -125,6 +132,9 @@ struct Frame {
   std::vector<FluidLook> fluids;
   float particle_radius =
       0.005f;  ///< m, of the ball with a particle's volume; splats are 1.2 times larger (5.1)
+  /// The nearest wall within a reach in m; where a processor draws, asked on the drawing thread for particles
+  /// that few others surround: they lie on it as drops and films do. Empty: they stay as they are.
+  std::function<std::optional<WallPoint>(const glm::vec3& at, float reach)> wall;
   std::span<const FoamPoint> foam;  ///< drawn over the fluid; fades below its surface
   std::vector<Arrow> arrows;
   std::function<void()>

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "peer/view/foam_walls.h"
+#include "peer/view/body_walls.h"
 #include "render/frame.h"
 #include "scenes/scene.h"
 #include "sim/snapshot.h"
@@ -86,7 +86,7 @@ class Foam {
   std::vector<std::uint32_t> sorted_;  // particles, bucket by bucket
   std::vector<std::uint32_t> fast_;
   std::vector<Drop> drops_;
-  std::optional<FoamWalls> walls_;  // made when first something is violent
+  std::optional<BodyWalls> walls_;  // made when first something is violent
   std::vector<FoamPoint> points_;
   std::size_t looked_at_ = 0;
   std::uint64_t state_ = 0x853c49e6748fea9bull;

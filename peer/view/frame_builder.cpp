@@ -181,6 +181,14 @@ Frame FrameBuilder::build(const Snapshot& snapshot, double view_distance) {
   frame.particle_radius = particle_radius_;
 
   const BodySnapshot& rigid = snapshot.rigid;
+  if (walls_) walls_->move(rigid.bodies);
+  frame.wall = [this, &rigid](const glm::vec3& at, float reach) {
+    if (!walls_) {
+      walls_.emplace(scene_, 0.0f);
+      walls_->move(rigid.bodies);
+    }
+    return walls_->nearest(at, reach);
+  };
   for (const Placed& placed : placed_) {
     const auto body = static_cast<std::size_t>(placed.body);
     const bool moves = placed.body >= 0 && body < rigid.bodies.size();

@@ -1,8 +1,10 @@
 // Scene and snapshot → Frame.
 #pragma once
 
+#include <optional>
 #include <vector>
 
+#include "peer/view/body_walls.h"
 #include "render/frame.h"
 #include "render/renderer.h"
 #include "scenes/scene.h"
@@ -37,6 +39,7 @@ class FrameBuilder {
   std::vector<Error> left_out_;
   std::vector<Placed> placed_;
   std::vector<FluidLook> fluids_;
+  std::optional<BodyWalls> walls_;  // made when first asked for
   MeshHandle ball_ = 0;
   float particle_radius_;
   double reference_force_ = 1.0;  // N that an arrow of full length stands for: the largest so far

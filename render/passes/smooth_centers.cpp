@@ -69,10 +69,22 @@ void SmoothCenters::sort(const Frame& frame) {
   known_.assign(frame.particles.size(), 0);
 }
 
-SmoothCenters::Smoothed SmoothCenters::smooth(const glm::vec3& at, float radius) const {
+SmoothCenters::Smoothed SmoothCenters::smooth(const glm::vec3& at, const Frame& frame) const {
   const float reach = cells_.reach();
+  const float radius = frame.particle_radius;
   const shader::Neighbourhood around = neighbourhood_of(cells_.places(), cells_.around(at), at, reach);
-  return {at + shader::smoothing_step(around, reach), shader::smoothing_ellipsoid(around, reach, radius)};
+  Smoothed smoothed{at + shader::smoothing_step(around, reach),
+                    shader::smoothing_ellipsoid(around, reach, radius)};
+  if (!frame.wall || around.weights >= shader::kLyingMany) return smoothed;
+  const std::optional<WallPoint> wall = frame.wall(at, shader::kLyingFar * radius);
+  if (!wall) return smoothed;
+  const float share = shader::lying_share(around, wall->normal, glm::distance(at, wall->at), radius);
+  const glm::mat3 lying = shader::lying_ellipsoid(around, wall->normal, radius);
+  // The fluid's surface stays beside its neighbours': along the wall the step is theirs.
+  const float off = glm::dot(smoothed.center - wall->at, wall->normal);
+  smoothed.center -= share * off * wall->normal;
+  smoothed.ellipsoid += share * (lying - smoothed.ellipsoid);
+  return smoothed;
 }
 
 void SmoothCenters::move(const Frame& frame, Splats& splats) {
@@ -82,7 +94,7 @@ void SmoothCenters::move(const Frame& frame, Splats& splats) {
     const std::uint32_t particle = splats.particles[i];
     Smoothed& smoothed = smoothed_[particle];
     if (!known_[particle]) {
-      smoothed = smooth(frame.particles[particle], frame.particle_radius);
+      smoothed = smooth(frame.particles[particle], frame);
       known_[particle] = 1;
     }
     glm::vec4& sphere = splats.spheres[i];

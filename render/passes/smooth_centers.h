@@ -32,7 +32,7 @@ class SmoothCenters {
     glm::vec3 center{0.0f};
     glm::mat3 ellipsoid{0.0f};
   };
-  Smoothed smooth(const glm::vec3& at, float radius) const;
+  Smoothed smooth(const glm::vec3& at, const Frame& frame) const;
 
   static constexpr float kReach =
       4.0f;  ///< particle radii, 2.5 spacings: some 60 neighbours inside the fluid

@@ -142,6 +142,13 @@ SHARED FluidMatter matter_of(FluidMixture mixture) {
                      m.refraction * each, m.roughness * each);
 }
 
+// What of a matt surface's light comes out of the fluid that wets it (Lekner & Dorf 1988, "Why some things are darker when wet"): of what
+// it scatters the share `kept` is mirrored back onto it by the fluid's surface, 1 − (1 − 0.06) / n² at n = 1.33. painted: its albedo.
+SHARED vec3 wet_share(vec3 painted) {
+  const float kept = 0.46f;
+  return vec3(1.0f - kept) / (vec3(1.0f) - kept * painted);
+}
+
 // Where the eye sees through a layer of fluid of `depth_in` m along the line of sight's depth, with `depth_behind` m of air
 // between it and what is seen: a place in eye axes. The far side is taken to lie along the near one, so that light leaves as
 // it came (a slab). here: the point of the surface; way: unit, from the eye; Snell's law.

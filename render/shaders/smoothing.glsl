@@ -13,6 +13,14 @@ const float kFewNeighbours = 4.0f;  // in sum of weights, itself counting as one
 /// Weights of neighbours from which a particle is as round as kEllipsoidRound says; below it is a ball of its volume.
 const float kAccompanied = 2.0f;
 
+// What lies on a wall. Half an ellipsoid with the volume of a ball of radius 1 that is 0.27 times as high as wide, as drops of water
+// are on wood or enamel; a layer is as high as its volume over its area. In particle radii.
+const float kLyingWide = 1.95f;
+const float kLyingHigh = 0.53f;
+const float kLayerHigh = 0.136f;  // times the weights of the neighbours in a plane
+const float kLyingNear = 1.5f, kLyingFar = 2.2f;  // of the centre from the wall
+const float kLyingFew = 9.0f, kLyingMany = 15.0f;  // weights between which a particle is one of a thicker layer
+
 // Weighted moments of the ways to a particle's neighbours, itself among them. m
 struct Neighbourhood {
   float weights;
@@ -34,6 +42,25 @@ SHARED vec3 smoothing_step(Neighbourhood n, float reach) {
   float flat_way = kSmoothingFlat * reach;
   float kept = smoothstep(0.3f * flat_way, 0.8f * flat_way, off) * flat_way / max(off, 1e-9f);
   return kSmoothingShare * (1.0f - kept) * way;
+}
+
+// Share in which a particle lies on a wall that is so far from its centre. At the rim of a full vessel few are near, too, but they
+// go on away from the wall.
+SHARED float lying_share(Neighbourhood n, vec3 normal, float away, float radius) {
+  float mean_off = dot(n.sum, normal) / max(n.weights, 1e-9f);
+  return (1.0f - smoothstep(kLyingNear, kLyingFar, away / radius)) * (1.0f - smoothstep(kLyingFew, kLyingMany, n.weights)) *
+         (1.0f - smoothstep(0.25f, 0.6f, mean_off / radius));
+}
+
+// m², about a centre on the wall.
+SHARED mat3 lying_ellipsoid(Neighbourhood n, vec3 normal, float radius) {
+  float high = max(kLyingHigh, kLayerHigh * n.weights) * radius;
+  float wide = kLyingWide * radius;
+  mat3 flat_disc = mat3(wide * wide);
+  float less = high * high - wide * wide;
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j) flat_disc[i][j] += less * normal[i] * normal[j];
+  return flat_disc;
 }
 
 // m². Radii go with the variances, as theirs do; so no axes have to be found.

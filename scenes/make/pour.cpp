@@ -112,7 +112,7 @@ SceneWriter make_pour() {
                    {"roughness", 0.4}});
   add_held(writer, "bowl", bowl_node, {{-0.13, kBowlRim - 0.014, 0.0}, {1.0, 0.0, 0.0, 0.0}}, 0, bowl_pose);
   add_held(writer, "pan", pan_node, {{0.17, 0.036, 0.0}, {1.0, 0.0, 0.0, 0.0}}, 1, pan_pose);
-  writer.add_camera({0.20, 0.56, 0.80}, {0.02, 0.18, 0.0}, 34.0);
+  writer.add_camera({0.21, 0.60, 0.84}, {0.01, 0.195, 0.0}, 35.0);
   return writer;
 }
 

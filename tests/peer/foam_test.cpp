@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/gtc/constants.hpp>
 
 namespace slosh {
 namespace {
@@ -206,7 +207,7 @@ TEST(FoamOnAPeer, AWallThatMovesTakesDropsAlong) {
   Scene scene;
   scene.meshes.push_back(thin_wall(0.0f));
   scene.bodies.emplace_back().mesh = 0;
-  FoamWalls walls(scene, 0.001f);
+  BodyWalls walls(scene, 0.001f);
   std::vector<BodyState> bodies(1);
   walls.move(bodies);
   const glm::vec3 still(0.05f, 0.0f, 0.0f);
@@ -219,6 +220,30 @@ TEST(FoamOnAPeer, AWallThatMovesTakesDropsAlong) {
   EXPECT_FALSE(walls.stop_now(still, still));
   EXPECT_TRUE(walls.stop_now(still, {0.2f, 0.0f, 0.0f}));
   EXPECT_FALSE(walls.stop_now(still, {0.05f, 0.2f, 0.0f})) << "along the wall";
+}
+
+TEST(BodyWalls, TheNearestFaceIsThatOfTheBodyAsItStands) {
+  Scene scene;
+  for (int i = 0; i < 2; ++i) {
+    scene.meshes.push_back(thin_wall(0.0f));
+    scene.bodies.emplace_back().mesh = i;
+  }
+  BodyWalls walls(scene, 0.0f);
+  std::vector<BodyState> bodies(2);
+  bodies[0].pose.position.x = 0.1;
+  bodies[1].pose.position.x = 0.1;
+  bodies[1].pose.orientation = glm::angleAxis(glm::half_pi<double>(), glm::dvec3(0.0, 0.0, 1.0));
+  walls.move(bodies);
+  const auto upright = walls.nearest({0.11f, 0.05f, 0.0f}, 0.02f);
+  ASSERT_TRUE(upright);
+  EXPECT_NEAR(upright->normal.x, 1.0f, 1e-5f);
+  EXPECT_NEAR(upright->at.y, 0.05f, 1e-5f);
+  EXPECT_LT(upright->at.x, 0.11f);
+  const auto level = walls.nearest({0.15f, -0.01f, 0.0f}, 0.02f);
+  ASSERT_TRUE(level);
+  EXPECT_NEAR(level->normal.y, -1.0f, 1e-5f);
+  EXPECT_NEAR(level->at.x, 0.15f, 1e-5f);
+  EXPECT_FALSE(walls.nearest({0.15f, 0.05f, 0.0f}, 0.02f)) << "too far from both";
 }
 
 TEST(FoamOnAPeer, SprayIsGoneWhereNoParticleIs) {

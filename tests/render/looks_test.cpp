@@ -2,7 +2,9 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
+#include <optional>
 
+#include "render/shader_math.h"
 #include "tests/render/render_test.h"
 
 namespace slosh {
@@ -229,6 +231,63 @@ TEST_F(LooksTest, AClearPaneIsSeenThrough) {
       EXPECT_LT(behind.at(x, y, c), through + static_cast<float>(panes) * mirrored) << c;
     }
   }
+}
+
+/// A white board, its top at y = 0, and who says where it is.
+std::optional<WallPoint> board_at(const glm::vec3& at, float reach) {
+  if (std::abs(at.y) > reach) return std::nullopt;
+  return WallPoint{{at.x, 0.0f, at.z}, {0.0f, 1.0f, 0.0f}};
+}
+
+TEST_F(LooksTest, ADropOnABoardIsFlatAndWetsIt) {
+  RenderOptions options = small();
+  options.width = 240;
+  options.height = 240;
+  options.shadow_size = 0;
+  options.pixel_passes = PixelPasses::kFragments;
+  auto renderer = make(options);
+  constexpr float kRadius = 0.005f;
+  const std::vector<glm::vec3> points{{0.0f, 1.2f * kRadius, 0.0f}};
+  const std::vector<std::uint8_t> fluids{0};
+  Frame frame = frame_of(points, fluids, kRadius);
+  frame.meshes = {place(*renderer, kit::make_box({-0.2f, -0.02f, -0.2f}, {0.2f, 0.0f, 0.2f}),
+                        {glm::vec3(0.5f), 0.0f, 1.0f, 1.0f})};
+  frame.view = kit::make_view({0.0f, 0.1f, 1e-4f}, {0.0f, 0.0f, 0.0f}, options.width, options.height);
+  // m² of the board that it covers, seen from above.
+  const auto covered = [&] {
+    renderer->draw(frame);
+    const FloatImage fluid = renderer->read_buffer(Buffer::kFluidIndex);
+    const double pixel = 2.0 * 0.1 / (frame.view.projection[1][1] * options.height);
+    return pixel * pixel *
+           static_cast<double>(std::ranges::count_if(fluid.values, [](float f) { return f >= 0.0f; }));
+  };
+  const double ball = covered();
+  EXPECT_NEAR(ball / (M_PI * kRadius * kRadius), 1.26, 0.15) << "its outline is a pixel wider";
+  const float dry = renderer->read_buffer(Buffer::kFinalColor).at(40, 120, 1);
+  frame.wall = board_at;
+  const double lying = covered();
+  EXPECT_NEAR(lying / (M_PI * kRadius * kRadius), 1.95 * 1.95, 0.5);
+  const float wet = renderer->read_buffer(Buffer::kFinalColor).at(120, 120, 1);
+  EXPECT_LT(wet, 0.85f * dry);
+  EXPECT_GT(wet, 0.5f * dry);
+  // 0.53 radii, less what the surface's filter takes off a tip.
+  const float depth = renderer->read_buffer(Buffer::kSmoothDepth).at(120, 120);
+  EXPECT_NEAR((0.1f - depth) / kRadius, 0.4f, 0.15f);
+}
+
+TEST_F(LooksTest, AFullVesselsRimStaysAtItsWall) {
+  // A corner of deep water: few are near there, too, but no film.
+  shader::Neighbourhood corner{8.0f, glm::vec3(8.0f * 0.005f), glm::vec3(1e-3f), glm::vec3(0.0f)};
+  shader::Neighbourhood film{8.0f, glm::vec3(0.0f), glm::vec3(1e-3f, 0.0f, 1e-3f), glm::vec3(0.0f)};
+  const glm::vec3 up(0.0f, 1.0f, 0.0f);
+  EXPECT_EQ(shader::lying_share(corner, up, 0.005f, 0.005f), 0.0f);
+  EXPECT_EQ(shader::lying_share(film, up, 0.005f, 0.005f), 1.0f);
+  EXPECT_EQ(shader::lying_share(film, up, 0.012f, 0.005f), 0.0f) << "it falls still";
+  film.weights = 16.0f;
+  EXPECT_EQ(shader::lying_share(film, up, 0.005f, 0.005f), 0.0f) << "several layers";
+  const glm::mat3 lying = shader::lying_ellipsoid({1.0f, {}, {}, {}}, up, 0.005f);
+  const float volume = 0.5f * std::sqrt(glm::determinant(lying));
+  EXPECT_NEAR(volume / std::pow(0.005f, 3.0f), 1.0f, 0.02f);
 }
 
 }  // namespace

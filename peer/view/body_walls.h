@@ -1,4 +1,4 @@
-// The bodies' faces, which drops of foam do not pass.
+// The bodies' faces: drops of foam do not pass them, and what fluid is left on them lies flat.
 #pragma once
 
 #include <glm/glm.hpp>
@@ -6,16 +6,17 @@
 #include <span>
 #include <vector>
 
+#include "render/frame.h"
 #include "scenes/mesh/tree.h"
 #include "scenes/scene.h"
 #include "sim/snapshot.h"
 
 namespace slosh {
 
-class FoamWalls {
+class BodyWalls {
  public:
   /// A tree a body that has a mesh. `clearance`: m that a drop keeps off a face.
-  FoamWalls(const Scene& scene, float clearance);
+  BodyWalls(const Scene& scene, float clearance);
 
   /// The bodies of a new snapshot, one a body of the scene; those before are kept for stop().
   void move(std::span<const BodyState> bodies);
@@ -25,6 +26,9 @@ class FoamWalls {
   std::optional<glm::vec3> stop(const glm::vec3& from, const glm::vec3& to) const;
   /// The same among the bodies as they are.
   std::optional<glm::vec3> stop_now(const glm::vec3& from, const glm::vec3& to) const;
+
+  /// The nearest face within `reach`, among the bodies as they are. m, world.
+  std::optional<WallPoint> nearest(const glm::vec3& at, float reach) const;
 
  private:
   struct Wall {

@@ -1,10 +1,10 @@
-#include "peer/view/foam_walls.h"
+#include "peer/view/body_walls.h"
 
 #include <algorithm>
 
 namespace slosh {
 
-FoamWalls::FoamWalls(const Scene& scene, float clearance) : clearance_(clearance) {
+BodyWalls::BodyWalls(const Scene& scene, float clearance) : clearance_(clearance) {
   for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
     const Body& body = scene.bodies[i];
     if (body.mesh < 0 || body.point_probe) continue;
@@ -13,7 +13,7 @@ FoamWalls::FoamWalls(const Scene& scene, float clearance) : clearance_(clearance
   }
 }
 
-void FoamWalls::move(std::span<const BodyState> bodies) {
+void BodyWalls::move(std::span<const BodyState> bodies) {
   for (Wall& wall : walls_) {
     if (wall.body >= bodies.size()) continue;
     const Pose& pose = bodies[wall.body].pose;
@@ -23,7 +23,7 @@ void FoamWalls::move(std::span<const BodyState> bodies) {
   placed_ = true;
 }
 
-std::optional<glm::vec3> FoamWalls::stop(const glm::vec3& from, const glm::vec3& to, bool moved) const {
+std::optional<glm::vec3> BodyWalls::stop(const glm::vec3& from, const glm::vec3& to, bool moved) const {
   std::optional<glm::vec3> stopped;
   glm::vec3 end = to;
   for (const Wall& wall : walls_) {
@@ -49,11 +49,27 @@ std::optional<glm::vec3> FoamWalls::stop(const glm::vec3& from, const glm::vec3&
   return stopped;
 }
 
-std::optional<glm::vec3> FoamWalls::stop(const glm::vec3& from, const glm::vec3& to) const {
+std::optional<glm::vec3> BodyWalls::stop(const glm::vec3& from, const glm::vec3& to) const {
   return stop(from, to, true);
 }
-std::optional<glm::vec3> FoamWalls::stop_now(const glm::vec3& from, const glm::vec3& to) const {
+std::optional<glm::vec3> BodyWalls::stop_now(const glm::vec3& from, const glm::vec3& to) const {
   return stop(from, to, false);
+}
+
+std::optional<WallPoint> BodyWalls::nearest(const glm::vec3& at, float reach) const {
+  std::optional<WallPoint> found;
+  for (const Wall& wall : walls_) {
+    const glm::vec3 here(transform_point(inverse(wall.now), glm::dvec3(at)));
+    if (glm::any(glm::lessThan(here, wall.tree.low() - reach)) ||
+        glm::any(glm::greaterThan(here, wall.tree.high() + reach)))
+      continue;
+    const mesh::NearestPoint face = wall.tree.nearest(here, reach);
+    if (face.triangle < 0) continue;
+    reach = face.distance;
+    found = WallPoint{glm::vec3(transform_point(wall.now, glm::dvec3(face.point))),
+                      glm::vec3(wall.now.orientation * glm::dvec3(wall.tree.face_normal(face.triangle)))};
+  }
+  return found;
 }
 
 }  // namespace slosh
