@@ -97,7 +97,8 @@ void HeadlessView::run(const Setup& setup) {
       painter.draw(*snapshot, now);
       image = renderer.read_back();
     }
-    if (still.rgba.empty() && setup.scene.still > 0.0 && snapshot->rigid.time >= setup.scene.still - 0.5 / options.frames_per_second)
+    if (still.rgba.empty() && setup.scene.still > 0.0 &&
+        snapshot->rigid.time >= setup.scene.still - 0.5 / options.frames_per_second)
       still = image;
     report_.frame_time.add(to_seconds(steady_now_ns() - begin_ns));
     report_.frames += 1;

@@ -91,7 +91,7 @@ constexpr Apart kBySoftware{1e-4, 1e-4, 1e-4, 3.5e-3, kPictures};
 /// A chip puts corners on 256ths of a pixel; splat.vert puts them there first, so that disc and corners
 /// agree. All of what thickness differs by is the sum of chords, in half floats there, in whole numbers here,
 /// and so is most of what the pictures do.
-constexpr Apart kByChip{3e-4, 6e-4, 3e-4, 7e-2, {0.085, 4.5e-3}};
+constexpr Apart kByChip{3e-4, 6e-4, 3e-4, 7e-2, {0.1, 6.5e-3}};
 /// Without the sum of chords (RenderOptions::layers).
 constexpr Apart kByChipWithoutChords{3e-4, 6e-4, 3e-4, 1.5e-3, kPictures};
 
