@@ -34,13 +34,12 @@ void Bridges::add(Frame& frame) {
   fluids_.assign(frame.particle_fluid.begin(),
                  frame.particle_fluid.begin() + static_cast<std::ptrdiff_t>(count));
   neighbours_.resize(cells_.size());
-  for (std::uint32_t a = 0; a < cells_.size(); ++a) neighbours_[a] = find_near(a, reach);
   const auto may_bridge = [&](std::uint32_t a) {
     return neighbours_[a] >= 2 && neighbours_[a] <= kSurrounded;
   };
   for (std::uint32_t a = 0; a < cells_.size(); ++a) {
+    neighbours_[a] = find_near(a, reach);
     if (!may_bridge(a)) continue;
-    find_near(a, reach);
     const glm::vec3 here = cells_.place(a);
     const std::uint8_t fluid = fluids_[cells_.source(a)];
     for (const std::uint32_t b : near_) {
