@@ -185,7 +185,7 @@ Lens lens_here(vec3 here, vec3 n, vec3 inside, float refraction, float thickness
   }
   growth *= splat.y / (2.0 * reach * -here.z);
   vec3 way = leaving_way(inside, far_normal(n, growth), refraction);
-  vec3 out_at = here + inside * (thickness / max(-inside.z, 0.25));
+  vec3 out_at = leaving_place(here, inside, thickness);
   lens.light = mirrored(mat3(world_from_eye) * way);
   // A body that the picture shows, where the way leads to one: guessed at the depth of what is behind, then at that of what is there.
   if (way.z > -0.1) return lens;

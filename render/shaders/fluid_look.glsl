@@ -149,12 +149,14 @@ SHARED vec3 wet_share(vec3 painted) {
   return vec3(1.0f - kept) / (vec3(1.0f) - kept * painted);
 }
 
+// Where light that goes `inside` (unit, eye axes) from `here` leaves a fluid `depth_in` m of depth farther away. A grazing way ends.
+SHARED vec3 leaving_place(vec3 here, vec3 inside, float depth_in) { return here + inside * (depth_in / max(-inside.z, 0.25f)); }
+
 // Where the eye sees through a layer of fluid of `depth_in` m along the line of sight's depth, with `depth_behind` m of air
 // between it and what is seen: a place in eye axes. The far side is taken to lie along the near one, so that light leaves as
 // it came (a slab). here: the point of the surface; way: unit, from the eye; Snell's law.
 SHARED vec3 seen_place(vec3 here, vec3 way, vec3 normal, float refraction, float depth_in, float depth_behind) {
-  vec3 inside = refract(way, normal, 1.0f / refraction);
-  vec3 out_at = here + inside * (depth_in / max(-inside.z, 0.25f));
+  vec3 out_at = leaving_place(here, refract(way, normal, 1.0f / refraction), depth_in);
   return out_at + way * (depth_behind / max(-way.z, 0.25f));
 }
 
