@@ -52,7 +52,7 @@ FrameBlock make_frame_block(const Frame& frame, const RenderOptions& options, co
   block.softbox = {studio.softbox, 0.0f};
   block.switches = {options.fresnel ? 1.0f : 0.0f, options.lit_fluid ? 1.0f : 0.0f,
                     options.fluid_shadow ? 1.0f : 0.0f, options.surface == Surface::kPaper ? 1.0f : 0.0f};
-  block.look_switches = {chords ? 1.0f : 0.0f, 0.0f, 0.0f, 0.0f};
+  block.look_switches = {chords ? 1.0f : 0.0f, 1.0f / shadow.depth_per_metre, shadow.reach, 0.0f};
   return block;
 }
 

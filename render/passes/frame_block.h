@@ -50,6 +50,7 @@ struct ShadowView {
   glm::mat4 shadow_from_world{1.0f};  ///< to the map's texture coordinates and depth, 0–1
   float depth_per_metre = 1.0f;       ///< of the map's depth
   float texel = 0.0f;                 ///< m
+  float reach = 0.0f;                 ///< texels about a point that are searched for what casts shadows
   int size = 0;                       ///< texels a side, 0 = no shadows
 };
 

@@ -12,8 +12,13 @@
 namespace slosh {
 namespace {
 
-/// Texture unit of shaders/shadow.glsl.
+/// Texture units of shaders/shadow.glsl.
+constexpr GLuint kReachUnit = 7;
 constexpr GLuint kShadowUnit = 8;
+constexpr int kTile = 8;  ///< texels a side (shadow_reach.frag)
+
+/// m to each side of a shadow's edge: no softer than the map's tiles allow, up to two of them.
+constexpr float kSoftest = 0.016f;
 
 /// The frame's known opaque meshes; `drawn`: which they are.
 std::vector<Caster> casters_of(const Frame& frame, const MeshStore& meshes,
@@ -98,13 +103,22 @@ Bounds fluid_box(const Frame& frame, const View& view) {
 }  // namespace
 
 Result<ShadowPass> ShadowPass::create(int size) {
-  auto program = gl::Program::create("depth_only.vert", "nothing.frag");
-  if (!program) return program.error();
   ShadowPass pass;
-  pass.program_ = std::move(program.value());
+  for (const Result<bool>& loaded :
+       {gl::take(pass.program_, gl::Program::create("depth_only.vert", "nothing.frag")),
+        gl::take(pass.tiles_program_, gl::Program::create("fullscreen.vert", "shadow_reach.frag")),
+        gl::take(pass.reach_program_,
+                 gl::Program::create("fullscreen.vert", "shadow_reach.frag", {"SPREAD"}))}) {
+    if (!loaded) return loaded.error();
+  }
+  pass.no_vertices_ = gl::make_vertex_array();
+  const glm::ivec2 tiles((size + kTile - 1) / kTile);
+  pass.tiles_ = gl::make_texture(tiles, GL_RG32F, GL_NEAREST);
+  pass.tiles_target_ = gl::make_framebuffer({&pass.tiles_});
+  pass.reach_ = gl::make_texture(tiles, GL_RG32F, GL_LINEAR);
+  pass.reach_target_ = gl::make_framebuffer({&pass.reach_});
   pass.size_ = size;
   pass.map_ = gl::make_texture(glm::ivec2(size), GL_DEPTH_COMPONENT32F, GL_LINEAR);
-  glTextureParameteri(pass.map_.name(), GL_TEXTURE_COMPARE_MODE, GL_COMPARE_REF_TO_TEXTURE);
   glTextureParameteri(pass.map_.name(), GL_TEXTURE_COMPARE_FUNC, GL_LEQUAL);
   pass.target_ = gl::make_framebuffer({}, &pass.map_);
   return pass;
@@ -128,7 +142,28 @@ void ShadowPass::draw_map(const MeshStore& meshes, std::span<const Shown> shown)
   glDisable(GL_DEPTH_TEST);
 }
 
+void ShadowPass::find_reach(int tiles_beside) {
+  glTextureParameteri(map_.name(), GL_TEXTURE_COMPARE_MODE, GL_NONE);
+  const int side = (size_ + kTile - 1) / kTile;
+  glViewport(0, 0, side, side);
+  glBindVertexArray(no_vertices_.name());
+  reach_program_.set("tiles_beside", tiles_beside);
+  const auto pass = [](const gl::Texture& from, const gl::Program& program, const gl::Framebuffer& to) {
+    gl::bind_textures({&from});
+    glBindFramebuffer(GL_FRAMEBUFFER, to.name());
+    program.use();
+    glDrawArrays(GL_TRIANGLES, 0, 3);
+  };
+  pass(map_, tiles_program_, reach_target_);
+  reach_program_.set("along", glm::ivec2(1, 0));
+  pass(reach_, reach_program_, tiles_target_);
+  reach_program_.set("along", glm::ivec2(0, 1));
+  pass(tiles_, reach_program_, reach_target_);
+  glTextureParameteri(map_.name(), GL_TEXTURE_COMPARE_MODE, GL_COMPARE_REF_TO_TEXTURE);
+}
+
 ShadowView ShadowPass::draw(const Frame& frame, const MeshStore& meshes, std::span<const View> views) {
+  glBindTextureUnit(kReachUnit, reach_.name());
   glBindTextureUnit(kShadowUnit, map_.name());
   std::vector<const MeshInstance*> drawn;
   const std::vector<Caster> casters = casters_of(frame, meshes, drawn);
@@ -141,7 +176,13 @@ ShadowView ShadowPass::draw(const Frame& frame, const MeshStore& meshes, std::sp
     // A table alone would fill the map.
     if (fit.casts[i]) shown.push_back({drawn[i]->mesh, clip_from_world * drawn[i]->model});
   }
-  if (!kept_ || shown != *kept_) draw_map(meshes, shown);
+  const glm::vec3 across(clip_from_world[0][0], clip_from_world[1][0], clip_from_world[2][0]);
+  const float texel = 2.0f / (glm::length(across) * static_cast<float>(size_));
+  const int tiles_beside = texel * kTile < kSoftest ? 2 : 1;
+  if (!kept_ || shown != *kept_) {
+    draw_map(meshes, shown);
+    find_reach(tiles_beside);
+  }
   kept_ = std::move(shown);
 
   const glm::mat4 to_texture =
@@ -149,11 +190,10 @@ ShadowView ShadowPass::draw(const Frame& frame, const MeshStore& meshes, std::sp
   ShadowView view;
   view.clip_from_world = clip_from_world;
   view.shadow_from_world = to_texture * clip_from_world;
-  const auto row = [&](int i) {
-    return glm::vec3(clip_from_world[0][i], clip_from_world[1][i], clip_from_world[2][i]);
-  };
-  view.depth_per_metre = 0.5f * glm::length(row(2));  // an orthographic view's depth rises evenly
-  view.texel = 2.0f / (glm::length(row(0)) * static_cast<float>(size_));
+  const glm::vec3 away(clip_from_world[0][2], clip_from_world[1][2], clip_from_world[2][2]);
+  view.depth_per_metre = 0.5f * glm::length(away);  // an orthographic view's depth rises evenly
+  view.texel = texel;
+  view.reach = static_cast<float>(kTile * tiles_beside);
   view.size = size_;
   return view;
 }

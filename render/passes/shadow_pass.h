@@ -1,4 +1,4 @@
-// The light's view of the opaque meshes: a depth map that mesh.frag and composite.frag read.
+// The light's view of the opaque meshes: a depth map, and how far its depths reach, for shadow.glsl.
 #pragma once
 
 #include <optional>
@@ -32,11 +32,19 @@ class ShadowPass {
     bool operator==(const Shown&) const = default;
   };
   void draw_map(const MeshStore& meshes, std::span<const Shown> shown);
+  void find_reach(int tiles_beside);
 
   std::optional<std::vector<Shown>> kept_;  ///< what the map shows
   gl::Program program_;
+  gl::Program tiles_program_;
+  gl::Program reach_program_;
+  gl::VertexArray no_vertices_;
   gl::Texture map_;
   gl::Framebuffer target_;
+  gl::Texture tiles_;  ///< nearest and farthest depth of 8 × 8 texels
+  gl::Framebuffer tiles_target_;
+  gl::Texture reach_;  ///< of them and some beside them
+  gl::Framebuffer reach_target_;
   int size_ = 0;
 };
 

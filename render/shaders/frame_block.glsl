@@ -16,7 +16,7 @@ layout(std140, binding = 0) uniform FrameBlock {
   vec4 ground;             // from below
   vec4 softbox;            // of the light as seen in reflections
   vec4 switches;           // fresnel, lit fluid, fluid shadow, section 5 as it stands
-  vec4 look_switches;      // chords are summed
+  vec4 look_switches;      // chords are summed; m of a unit of the shadow map's depth; texels that shadow_reach knows to each side
 };
 
 // Eye position of a pixel (gl_FragCoord.xy or texel + 0.5) at a linear eye depth.

@@ -1,30 +1,67 @@
-// Share of the light that reaches a world point past the meshes, by percentage-closer filtering.
+// Share of the light that reaches a world point past the meshes: percentage-closer soft shadows (Fernando 2005), wider the farther what
+// casts them is, by few taps where nothing is far.
 #include "frame_block.glsl"
 
+layout(binding = 7) uniform sampler2D shadow_reach;  // nearest, farthest depth about a tile (shadow_reach.frag)
 layout(binding = 8) uniform sampler2DShadow shadow_map;
 layout(binding = 9) uniform sampler2D fluid_shadow;  // dimming per channel; 1 − depth of the fluid's top (fluid_shadow.frag)
 
+const float kLightWide = 0.08;  // tangent of half the angle that the light has for shadows
+#ifdef FAST
+const int kSoftTaps = 16;
+#else
+const int kSoftTaps = 32;
+#endif
+
 vec3 in_shadow_map(vec3 world) { return (shadow_from_world * vec4(world, 1.0)).xyz; }
+
+// By a surface's own slope depths differ from texel to texel; of the map's depth over its texture coordinates.
+vec2 slope_in_shadow_map(vec3 normal) {
+  vec3 turned = mat3(shadow_from_world) * normal;
+  float across = 2.0 * to_light_eye.w / key_light.w;  // of the map, 1/m
+  float away = 1.0 / look_switches.y;
+  vec2 slope = -turned.xy * (away * away) / (across * across * min(turned.z, -0.1 * away));
+  return turned.z < 0.0 ? slope : vec2(0.0);
+}
 
 // normal: unit, world. The look-up moves off the surface, so that a surface does not shade itself.
 float light_past_meshes(vec3 world, vec3 normal) {
   vec3 at = in_shadow_map(world + normal * key_light.w);
-  float reaching;
+  bool outside = to_light_world.w < 0.5 || any(greaterThan(abs(at - 0.5), vec3(0.5)));
+  if (outside) return 1.0;
+  float texel = to_light_eye.w;
+  vec2 tile = at.xy / (8.0 * texel);
+  vec2 ends = texelFetch(shadow_reach, ivec2(tile), 0).rg;
+  float facing = clamp(dot(normal, to_light_world.xyz), 0.1, 1.0);
+  // What a plane through the point has in so many texels; nearer than that a soft edge is as wide as a texel.
+  float own = 0.5 * (look_switches.z + 8.0) * key_light.w * sqrt(1.0 - facing * facing) / (facing * look_switches.y);
+  if (ends.y < at.z - own) return 0.0;
+  if (ends.x < at.z - own) {
+    float nearest = texture(shadow_reach, tile / vec2(textureSize(shadow_reach, 0))).r;
+    float wide = 2.0 * kLightWide * max(at.z - nearest, 0.0) * look_switches.y / key_light.w;
+    wide = clamp(wide, 1.0, look_switches.z) * texel;
+    vec2 slope = slope_in_shadow_map(normal);
+    float reaching = 0.0;
+    for (int k = 0; k < kSoftTaps; ++k) {
+      // On a spiral by the golden angle, each for as much area.
+      float angle = 2.3999632 * float(k);
+      vec2 off = wide * sqrt((float(k) + 0.5) / float(kSoftTaps)) * vec2(cos(angle), sin(angle));
+      reaching += texture(shadow_map, vec3(at.xy + off, at.z + dot(slope, off)));
+    }
+    return reaching / float(kSoftTaps);
+  }
 #ifdef FAST
   // Two bilinear taps across a texel's diagonal: the steps of a map that is turned against the picture melt.
-  vec2 across = to_light_eye.w * vec2(0.75, 0.75);
-  reaching = 0.5 * (texture(shadow_map, vec3(at.xy - across, at.z)) + texture(shadow_map, vec3(at.xy + across, at.z)));
+  vec2 across = texel * vec2(0.75, 0.75);
+  return 0.5 * (texture(shadow_map, vec3(at.xy - across, at.z)) + texture(shadow_map, vec3(at.xy + across, at.z)));
 #else
   // Four bilinear taps, turned so that their footprints do not line up with the texels.
-  float texel = to_light_eye.w;
-  reaching = texture(shadow_map, vec3(at.xy + texel * vec2(0.55, 1.3), at.z));
+  float reaching = texture(shadow_map, vec3(at.xy + texel * vec2(0.55, 1.3), at.z));
   reaching += texture(shadow_map, vec3(at.xy + texel * vec2(-1.3, 0.55), at.z));
   reaching += texture(shadow_map, vec3(at.xy + texel * vec2(-0.55, -1.3), at.z));
   reaching += texture(shadow_map, vec3(at.xy + texel * vec2(1.3, -0.55), at.z));
-  reaching *= 0.25;
+  return 0.25 * reaching;
 #endif
-  bool outside = to_light_world.w < 0.5 || any(greaterThan(abs(at - 0.5), vec3(0.5)));
-  return outside ? 1.0 : reaching;
 }
 
 // What fluid above leaves of the light for a point on the fluid's own surface. It fades in from three to nine splat radii

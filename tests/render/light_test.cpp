@@ -34,6 +34,53 @@ TEST_F(LightTest, ABallCastsAShadow) {
   }
 }
 
+TEST_F(LightTest, AShadowIsSharpWhereItsBodyTouchesAndSoftFarFromIt) {
+  for (Quality quality : {Quality::kFast, Quality::kFull}) {
+    RenderOptions options = small();
+    options.width = 640;
+    options.height = 480;
+    options.quality = quality;
+    options.ambient_occlusion = false;
+    options.environment = even_room();
+    options.shadow_size = 512;
+    auto renderer = make(options);
+    Frame frame = empty_frame(options.width, options.height);
+    frame.view = kit::make_view({0.0f, 0.3f, 1e-4f}, {0.0f, 0.0f, 0.0f}, options.width, options.height);
+    frame.light_direction = {-1.0f, -1.0f, 0.0f};
+    const MeshLook white{glm::vec3(0.8f), 0.0f, 1.0f, 1.0f};
+    const MeshInstance floor =
+        place(*renderer, kit::make_box({-0.5f, -0.1f, -0.5f}, {0.5f, 0.0f, 0.5f}), white);
+    MeshInstance bar = place(*renderer, kit::make_box({0.0f, 0.0f, -0.3f}, {0.05f, 0.002f, 0.3f}), white);
+    const float pixel = 2.0f * 0.3f / (frame.view.projection[1][1] * static_cast<float>(options.height));
+    // m of the floor, across the shadow's free edge, from a tenth of the light to nine.
+    const auto softness = [&](float height) {
+      bar.model = glm::translate(glm::mat4(1.0f), glm::vec3(0.0f, height, 0.0f));
+      frame.meshes = {floor, bar};
+      renderer->draw(frame);
+      const FloatImage seen = renderer->read_buffer(Buffer::kSceneColor);
+      const auto at = [&](float x) {
+        return seen.at(options.width / 2 + static_cast<int>(x / pixel), options.height / 2, 1);
+      };
+      const float lit = at(-height - 0.03f), dark = at(-0.9f * height + 0.012f);
+      EXPECT_LT(dark, 0.6f * lit) << height;
+      float between = 0.0f;
+      float before = 1.0f;
+      for (float x = -height - 0.03f; x < -0.9f * height + 0.012f; x += pixel) {
+        const float share = (at(x) - dark) / (lit - dark);
+        EXPECT_LT(share, before + 0.03f) << "it never grows lighter inwards: " << height << " at " << x;
+        before = share;
+        if (share > 0.1f && share < 0.9f) between += pixel;
+      }
+      return between;
+    };
+    EXPECT_LT(softness(0.015f), 0.0065f) << "no less than a texel to each side";
+    // Of a round light's edge 0.687 of the radius to either side; light goes 1.41 times as far and meets the
+    // floor at a slant.
+    for (const float height : {0.05f, 0.07f})
+      EXPECT_NEAR(softness(height), 2.0f * 0.687f * 0.08f * height * 2.0f, 0.004f) << height;
+  }
+}
+
 TEST_F(LightTest, FluidDimsTheLightPerChannel) {
   RenderOptions options = small();
   auto renderer = make(options);
