@@ -69,10 +69,25 @@ class MeshSink {
   virtual TextureHandle add_texture(const TextureImage& image) = 0;
 };
 
+/// Where fluid wets a body, or did: shares on a grid of cells in its mesh's frame. A cell says it of the
+/// faces that have it within `off` before them; between cells' centres it is linear.
+struct Wetness {
+  std::uint64_t version = 0;             ///< another for other shares; 0: dry
+  glm::vec3 low{0.0f};                   ///< m, the grid's corner
+  float cell = 0.01f;                    ///< m
+  float off = 0.005f;                    ///< m, before a face
+  glm::ivec3 size{0};                    ///< cells
+  std::span<const std::uint8_t> shares;  ///< a cell each, x runs first: below 64 dry, from 192 wet
+  glm::ivec3 wet_low{0};                 ///< cells: in here lies all that is not 0,
+  glm::ivec3 wet_high{0};                ///< this one excluded
+  bool operator==(const Wetness& other) const { return version == other.version; }
+};
+
 struct MeshInstance {
   MeshHandle mesh = 0;
   glm::mat4 model{1.0f};  ///< mesh frame to world, rigid
   MeshLook look;
+  Wetness wet{};  ///< of an opaque one
   bool operator==(const MeshInstance&) const = default;
 };
 
@@ -132,8 +147,9 @@ struct Frame {
   std::vector<FluidLook> fluids;
   float particle_radius =
       0.005f;  ///< m, of the ball with a particle's volume; splats are 1.2 times larger (5.1)
-  /// The nearest wall within a reach in m; where a processor draws, asked on the drawing thread for particles
-  /// that few others surround: they lie on it as drops and films do. Empty: they stay as they are.
+  /// The nearest wall within a reach in m: particles that few others surround lie on it as drops and films
+  /// do. A processor asks for it, on the drawing thread; a GPU takes the meshes that a view sees. Empty: none
+  /// lie.
   std::function<std::optional<WallPoint>(const glm::vec3& at, float reach)> wall;
   std::span<const FoamPoint> foam;  ///< drawn over the fluid; fades below its surface
   std::vector<Arrow> arrows;

@@ -71,6 +71,7 @@ void Renderer::prepare(const Frame& frame, std::span<const View> views) {
   Parts& p = *parts_;
   p.times.clear();
   p.frame = frame;
+  p.wet_maps.take(p.frame);
   p.offered_on_gpu = p.offered_on_gpu || frame.on_gpu;
   if (p.options.bridges && p.options.surface == Surface::kOurs && !p.compute)
     p.run("bridges", [&] { p.bridges.add(p.frame); });

@@ -211,7 +211,7 @@ void Renderer::Parts::draw_scene() {
   drew_caustics = false;
   const bool occlusion = occludes();
   run_in_part("opaque meshes", [&] {
-    scene_pass->draw_opaque(frame, meshes, textures, targets, options.draw_background, occlusion);
+    scene_pass->draw_opaque(frame, meshes, textures, wet_maps, targets, options.draw_background, occlusion);
   });
   // A CPU's driver draws these with its own threads while the splats are made ready in main memory, and what
   // follows until the filter's depths are there while it works.

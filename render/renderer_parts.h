@@ -31,6 +31,7 @@
 #include "render/passes/targets.h"
 #include "render/passes/textures.h"
 #include "render/passes/thickness_pass.h"
+#include "render/passes/wet_maps.h"
 #include "render/renderer.h"
 
 namespace slosh {
@@ -56,6 +57,7 @@ struct Renderer::Parts {
   RenderOptions options;
   MeshStore meshes;
   TextureStore textures;
+  WetMaps wet_maps;
   FrameUniforms uniforms;
   std::array<Picture, 2> pictures;  ///< of the views drawn together last
   Targets& targets = pictures[0].targets;

@@ -54,7 +54,7 @@ void Renderer::Parts::draw_stages_before_fluid(std::span<Picture> drawn, bool ti
     const bool background = options.draw_background;
     each(drawn, [&](Picture& p) {
       if (tiled) return scene_pass->start_opaque(frame, p.meshes, p.targets, background, occludes());
-      scene_pass->draw_opaque(frame, meshes, textures, p.targets, background, occludes());
+      scene_pass->draw_opaque(frame, meshes, textures, wet_maps, p.targets, background, occludes());
     });
     particles->start_next();
     gl::finish_compute();

@@ -129,7 +129,9 @@ class FrameBuilder::Textures {
 };
 
 FrameBuilder::FrameBuilder(const Scene& scene, double spacing, MeshSink& meshes)
-    : scene_(scene), particle_radius_(static_cast<float>(kRadiusOfSpacing * spacing)) {
+    : scene_(scene),
+      wetness_(scene, spacing),
+      particle_radius_(static_cast<float>(kRadiusOfSpacing * spacing)) {
   std::vector<MeshHandle> handles(scene.meshes.size());
   std::vector<bool> loaded(scene.meshes.size(), false);
   const auto upload = [&](int index) {
@@ -189,11 +191,12 @@ Frame FrameBuilder::build(const Snapshot& snapshot, double view_distance) {
     }
     return walls_->nearest(at, reach);
   };
+  wetness_.record(snapshot);
   for (const Placed& placed : placed_) {
     const auto body = static_cast<std::size_t>(placed.body);
     const bool moves = placed.body >= 0 && body < rigid.bodies.size();
-    frame.meshes.push_back(
-        {placed.mesh, moves ? model_matrix(rigid.bodies[body].pose) : placed.model, placed.look});
+    frame.meshes.push_back({placed.mesh, moves ? model_matrix(rigid.bodies[body].pose) : placed.model,
+                            placed.look, moves ? wetness_.of(body) : Wetness{}});
   }
   for (std::size_t i = 0; i < scene_.bodies.size() && i < rigid.bodies.size(); ++i) {
     if (scene_.bodies[i].mesh >= 0) continue;  // a point probe: as large as a particle

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "peer/view/body_walls.h"
+#include "peer/view/body_wetness.h"
 #include "render/frame.h"
 #include "render/renderer.h"
 #include "scenes/scene.h"
@@ -18,8 +19,8 @@ class FrameBuilder {
   /// `scene` must outlive it. `spacing` in m.
   FrameBuilder(const Scene& scene, double spacing, MeshSink& meshes);
 
-  /// The returned frame points into `snapshot`, which must live until it is drawn. Without view and HUD.
-  /// `view_distance` (m, eye to target) sizes the force arrows.
+  /// The returned frame points into `snapshot` and this, which must live until it is drawn. Without view and
+  /// HUD. `view_distance` (m, eye to target) sizes the force arrows.
   Frame build(const Snapshot& snapshot, double view_distance);
   /// A hand's controller at `pose`, so that one sees one's own hands.
   void add_controller(const Pose& pose, double scale, Frame& frame) const;
@@ -40,6 +41,7 @@ class FrameBuilder {
   std::vector<Placed> placed_;
   std::vector<FluidLook> fluids_;
   std::optional<BodyWalls> walls_;  // made when first asked for
+  BodyWetness wetness_;
   MeshHandle ball_ = 0;
   float particle_radius_;
   double reference_force_ = 1.0;  // N that an arrow of full length stands for: the largest so far

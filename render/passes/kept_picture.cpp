@@ -93,6 +93,20 @@ Bounds box_of(const MeshInstance& instance, const MeshStore& meshes) {
   return box;
 }
 
+/// The same of what is wet of it.
+Bounds wet_box_of(const MeshInstance& instance) {
+  const Wetness& wet = instance.wet;
+  Bounds box;
+  if (wet.version == 0) return box;
+  // Half a cell beyond the outermost there is still some of it, and it is told before the face.
+  const float pad = wet.cell + wet.off;
+  const Bounds own{wet.low + wet.cell * glm::vec3(wet.wet_low) - pad,
+                   wet.low + wet.cell * glm::vec3(wet.wet_high) + pad};
+  for (int corner = 0; corner < 8; ++corner)
+    box.add(glm::vec3(instance.model * glm::vec4(box_corner(own, corner), 1.0f)));
+  return box;
+}
+
 PixelBox moving_parts(const Frame& frame, const Projector& seen) {
   Bounds fluid;
   const std::size_t count = std::min(frame.particles.size(), frame.particle_fluid.size());
@@ -158,6 +172,10 @@ PixelBox KeptPicture::changed(const Frame& frame, const MeshStore& meshes, glm::
   if (known) {
     box.add(last_->moving);
     for (std::size_t i = 0; i < frame.meshes.size(); ++i) {
+      if (last_->meshes[i].wet != frame.meshes[i].wet) {
+        box.add(seen.of(wet_box_of(last_->meshes[i]), 0.0f));
+        box.add(seen.of(wet_box_of(frame.meshes[i]), 0.0f));
+      }
       if (last_->meshes[i].model == frame.meshes[i].model) continue;
       box.add(seen.of(box_of(last_->meshes[i], meshes), 0.0f));
       box.add(seen.of(box_of(frame.meshes[i], meshes), 0.0f));

@@ -28,10 +28,11 @@ class KeptPicture {
   /// The next picture is drawn whole.
   void forget() { last_.reset(); }
 
-  /// Where `frame`, in its view, may look different from the frame given last: bodies that moved, arrows,
-  /// fluid and foam (always), each where it was and where it is, and whatever their shadows may fall on. The
-  /// whole picture where the eye, the light, the set of bodies or a look changed, or where it cannot be told.
-  /// `size`: of the picture. `shadow_texel`: m, of the light's map; 0 without shadows.
+  /// Where `frame`, in its view, may look different from the frame given last: bodies that moved, wetter
+  /// or drier parts of them, arrows, fluid and foam (always), each where it was and where it is, and whatever
+  /// their shadows may fall on. The whole picture where the eye, the light, the set of bodies or a look
+  /// changed, or where it cannot be told. `size`: of the picture. `shadow_texel`: m, of the light's map; 0
+  /// without shadows.
   PixelBox changed(const Frame& frame, const MeshStore& meshes, glm::ivec2 size, float shadow_texel);
 
  private:

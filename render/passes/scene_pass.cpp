@@ -99,7 +99,8 @@ Result<ScenePass> ScenePass::create(bool fast, bool compute, const std::vector<s
 }
 
 void ScenePass::draw_opaque(const Frame& frame, const MeshStore& meshes, const TextureStore& textures,
-                            const Targets& targets, bool background, bool occlusion_follows) {
+                            const WetMaps& wet, const Targets& targets, bool background,
+                            bool occlusion_follows) {
   const auto sorted = opaque_nearest_first(frame, meshes);
   const gl::Framebuffer& target = occlusion_follows ? targets.mesh_target : targets.plain_mesh_target;
   const glm::vec4 black(0.0f);
@@ -118,10 +119,12 @@ void ScenePass::draw_opaque(const Frame& frame, const MeshStore& meshes, const T
   for (GLenum culled : {GL_BACK, GL_FRONT}) {
     glCullFace(culled);
     for (const MeshInstance* instance : sorted) {
-      const unsigned bits = map_bits(instance->look, textures);
+      const bool is_wet = wet.has(frame, *instance);
+      const unsigned bits = map_bits(instance->look, textures) | (is_wet ? kWet : 0u);
       const gl::Program& program = opaque_.of(bits);
       program.use();
       set_look(program, *instance, bits);
+      if (is_wet) wet.bind(frame, *instance, program);
       bind_maps(instance->look.maps, bits, textures);
       meshes.draw(instance->mesh);
     }

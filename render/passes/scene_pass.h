@@ -12,6 +12,7 @@
 #include "render/passes/targets.h"
 #include "render/passes/textures.h"
 #include "render/passes/tiled_meshes.h"
+#include "render/passes/wet_maps.h"
 #include "render/renderer.h"
 
 namespace slosh {
@@ -24,7 +25,7 @@ class ScenePass {
   /// By fragments. Reads opaque meshes and the shadow map; writes S_d, the depth buffer and the colour
   /// (mesh_color if occlusion follows, else color).
   void draw_opaque(const Frame& frame, const MeshStore& meshes, const TextureStore& textures,
-                   const Targets& targets, bool background, bool occlusion_follows);
+                   const WetMaps& wet, const Targets& targets, bool background, bool occlusion_follows);
   /// Whether this frame's meshes go by tiles: then all of them, for each of its views, by what follows;
   /// nobody reads any of it before gl::finish_compute(). All views' looks first, which sorts each one's
   /// meshes, then a view's lists.

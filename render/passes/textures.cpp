@@ -29,7 +29,7 @@ GLenum shrink(TextureShrink shrink) {
 
 struct Slot {
   unsigned bit;
-  TextureHandle MeshMaps::*map;
+  TextureHandle MeshMaps::* map;
 };
 constexpr Slot kSlots[] = {{kBaseMap, &MeshMaps::base_color},
                            {kMetalRoughMap, &MeshMaps::metallic_roughness},
@@ -87,7 +87,7 @@ std::vector<std::string> map_defines(unsigned bits) {
   if (bits & (kBaseMap | kMetalRoughMap | kNormalMap | kOcclusionMap | kEmissiveMap))
     defines.emplace_back("TEXTURED");
   constexpr const char* kNames[] = {"BASE_MAP",     "METAL_ROUGH_MAP", "NORMAL_MAP", "OCCLUSION_MAP",
-                                    "EMISSIVE_MAP", "EMITS",           "HOLES"};
+                                    "EMISSIVE_MAP", "EMITS",           "HOLES",      "WET"};
   for (unsigned i = 0; i < std::size(kNames); ++i)
     if (bits & (1u << i)) defines.emplace_back(kNames[i]);
   return defines;

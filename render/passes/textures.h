@@ -32,6 +32,7 @@ enum MapBits : unsigned {
   kEmissiveMap = 16,
   kEmits = 32,  ///< light of its own, with or without a map
   kHoles = 64,
+  kWet = 128,  ///< the instance's (wet_maps.h)
 };
 unsigned map_bits(const MeshLook& look, const TextureStore& textures);
 std::vector<std::string> map_defines(unsigned bits);

@@ -70,7 +70,7 @@ bool TiledMeshes::suit(const Frame& frame, const MeshStore& meshes, const Textur
   for (const MeshInstance& instance : frame.meshes) {
     if (!meshes.has(instance.mesh)) continue;
     const bool opaque = instance.look.opacity >= 1.0f;
-    const unsigned bits = map_bits(instance.look, textures);
+    const unsigned bits = map_bits(instance.look, textures) | (instance.wet.version != 0 ? kWet : 0u);
     if (opaque ? (bits & ~unsigned{kEmits}) != 0 : (bits & kBaseMap) != 0) return false;
     triangles += meshes.triangle_count(instance.mesh) * (opaque ? 1 : 2);
   }

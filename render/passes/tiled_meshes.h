@@ -36,8 +36,8 @@ class TiledMeshes {
   /// Errors carry the driver's log.
   static Result<TiledMeshes> create(bool fast, const std::vector<std::string>& far_light);
 
-  /// The frame's meshes have no maps, and are not so many triangles that tiles would take long to go through
-  /// them.
+  /// The frame's meshes have no maps and are dry, and are not so many triangles that tiles would take long to
+  /// go through them.
   static bool suit(const Frame& frame, const MeshStore& meshes, const TextureStore& textures);
 
   /// Of one kind.

@@ -102,16 +102,6 @@ float way_beside(vec2 middle, float back, int taps) {
   return 0.5 * way;
 }
 
-// Share in which a film or a drop lies on what is behind, which is wet then: it touches, and goes along it. Deep fluids have it in
-// their colours.
-float wet_here(vec3 here, vec3 n, vec3 to_eye, float thickness, float scene, float back, ivec2 texel) {
-  float high = thickness * abs(dot(n, to_eye)) / splat.x;
-  float share = (1.0 - smoothstep(0.25, 1.0, (scene - back) / splat.x)) * (1.0 - smoothstep(1.0, 1.7, high));
-  if (share <= 0.0) return 0.0;
-  vec3 wall = depth_normal(scene_depth, eye_position(vec2(texel) + 0.5, scene), texel, camera.w);
-  return share * smoothstep(0.55, 0.8, dot(wall, n));
-}
-
 // What of the scene behind is seen. A body in front of the fluid must not show through it; whole texels, as a mean would mix such a
 // body in. There may be a body in the fluid here, and beside it, what lies behind: with the body's short way that was a pale rim at its
 // foot.
@@ -271,8 +261,6 @@ bool pixel(ivec2 texel, out vec4 value) {
   mirrored_light = mix(mirrored_light, body.rgb, body.a * (1.0 - smoothstep(0.15, 0.45, matter.roughness)));
 #endif
   vec3 seen = seen_behind(behind.texel);
-  // Lit in full, white is about 1.4.
-  seen *= mix(vec3(1.0), wet_share(clamp(seen / 1.4, 0.0, 0.95)), wet_here(eye, surface.normal, to_eye, thickness, scene, back, texel));
   seen = mix(seen, studio(mat3(world_from_eye) * -to_eye * vec3(1.0, -1.0, 1.0)), far.by_floor);
   Lens lens = lens_here(eye, surface.normal, inside, matter.refraction, thickness, scene, back, middle);
   FluidLight lit = FluidLight(key_light.rgb * light, ambient_light(world_n) * open_sky(eye, surface.normal, texel, taps),

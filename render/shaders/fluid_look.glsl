@@ -142,13 +142,6 @@ SHARED FluidMatter matter_of(FluidMixture mixture) {
                      m.refraction * each, m.roughness * each);
 }
 
-// What of a matt surface's light comes out of the fluid that wets it (Lekner & Dorf 1988, "Why some things are darker when wet"): of what
-// it scatters the share `kept` is mirrored back onto it by the fluid's surface, 1 − (1 − 0.06) / n² at n = 1.33. painted: its albedo.
-SHARED vec3 wet_share(vec3 painted) {
-  const float kept = 0.46f;
-  return vec3(1.0f - kept) / (vec3(1.0f) - kept * painted);
-}
-
 // Where light that goes `inside` (unit, eye axes) from `here` leaves a fluid `depth_in` m of depth farther away. A grazing way ends.
 SHARED vec3 leaving_place(vec3 here, vec3 inside, float depth_in) { return here + inside * (depth_in / max(-inside.z, 0.25f)); }
 

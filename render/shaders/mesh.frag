@@ -1,5 +1,5 @@
 // An opaque mesh: scene-linear colour, and the linear eye depth S_d. What a look has is compiled in (textures.h): BASE_MAP,
-// METAL_ROUGH_MAP, NORMAL_MAP, OCCLUSION_MAP, EMISSIVE_MAP, each with TEXTURED; EMITS; HOLES.
+// METAL_ROUGH_MAP, NORMAL_MAP, OCCLUSION_MAP, EMISSIVE_MAP, each with TEXTURED; EMITS; HOLES; WET (wet_maps.h).
 #include "mesh_light.glsl"
 #include "material.glsl"
 in vec3 world;
@@ -33,6 +33,13 @@ layout(binding = 20) uniform sampler2D emissive_map;
 #ifdef HOLES
 uniform float alpha_cutoff;
 #endif
+#ifdef WET
+layout(binding = 21) uniform sampler3D wet_map;
+uniform mat4 wet_from_world;  // to texture coordinates
+uniform vec3 wet_low;         // between these lies all that is wet
+uniform vec3 wet_high;
+uniform float wet_off;        // m before a face
+#endif
 layout(location = 0) out vec4 color;  // alpha: share of the light that occlusion may take
 layout(location = 1) out float depth;
 void main() {
@@ -60,6 +67,14 @@ void main() {
 #endif
 #ifdef HOLES
   if (base_texel.a < alpha_cutoff) discard;
+#endif
+#ifdef WET
+  vec3 at = (wet_from_world * vec4(world + wet_off * n, 1.0)).xyz;
+  if (all(greaterThan(at, wet_low)) && all(lessThan(at, wet_high))) {
+    float wet = smoothstep(0.25, 0.75, textureLod(wet_map, at, 0.0).r);
+    painted = wetted(painted, metal_rough, wet);
+    metal_rough.y = mix(metal_rough.y, min(metal_rough.y, kWetRoughness), wet);
+  }
 #endif
   color = mesh_light(world, n, to_eye, painted, metal_rough, open);
 #ifdef EMITS

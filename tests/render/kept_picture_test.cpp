@@ -1,6 +1,7 @@
 // What stands still is kept from picture to picture, and nobody can tell.
 #include "render/passes/kept_picture.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <glm/gtc/matrix_transform.hpp>
@@ -60,6 +61,15 @@ TEST_F(KeptPictureTest, LooksLikeOneThatIsDrawnWhole) {
   check("one on the table was lifted: its shadow left");
   for (glm::vec3& p : scene.particles) p.y += 0.01f * std::sin(30.0f * p.x);
   check("fluid moved");
+  std::vector<std::uint8_t> shares(8 * 8 * 8, 255);
+  const Wetness wet{1, {-0.02f, -0.02f, -0.02f}, 0.02f, 0.005f, {8, 8, 8}, shares, {0, 0, 0}, {8, 8, 8}};
+  frame.meshes[0].wet = wet;
+  check("a wet spot");
+  std::fill(shares.begin(), shares.end(), std::uint8_t{128});
+  frame.meshes[0].wet.version = 2;
+  check("it dries");
+  frame.meshes[0].wet = {};
+  check("it is dry");
   frame.arrows = {{{0.1f, 0.06f, 0.02f}, {0.3f, 0.26f, 0.02f}, {0.9f, 0.5f, 0.1f}}};
   check("an arrow");
   frame.arrows.clear();
@@ -83,7 +93,7 @@ TEST_F(KeptPictureTest, LooksLikeOneThatIsDrawnWhole) {
   options.keep_still = false;
   ASSERT_TRUE(whole->set_options(options));
   check("other options");
-  EXPECT_EQ(different_from_before, 11u) << "each change was seen";
+  EXPECT_EQ(different_from_before, 14u) << "each change was seen";
 }
 
 TEST_F(KeptPictureTest, AShadowMapIsKeptUntilABodyMoves) {

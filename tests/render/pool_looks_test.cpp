@@ -15,7 +15,7 @@ float pool_luma(const FloatImage& image, int x, int y) {
   return 0.2126f * image.at(x, y, 0) + 0.7152f * image.at(x, y, 1) + 0.0722f * image.at(x, y, 2);
 }
 
-/// A fluid 65 mm deep, in a tank of such a look, on a table.
+/// A fluid 65 mm deep, in a tank of such a look that is wet where the fluid is, on a table.
 FloatImage pool_picture(Renderer& renderer, const FluidLook& fluid, const MeshLook& tank, const View& view,
                         float spacing = 0.006f) {
   const glm::vec3 low(-0.15f, 0.0f, -0.09f), high(0.15f, 0.12f, 0.09f);
@@ -30,6 +30,12 @@ FloatImage pool_picture(Renderer& renderer, const FluidLook& fluid, const MeshLo
   frame.meshes = {add(kit::make_box({-0.5f, -0.05f, -0.4f}, {0.5f, -0.006f, 0.4f}),
                       {{0.42f, 0.22f, 0.11f}, 0.0f, 0.55f, 1.0f}),
                   add(kit::make_tank(low, high, 0.005f), tank)};
+  constexpr float kCell = 0.005f;
+  const glm::ivec3 cells(70, 30, 46);
+  std::vector<std::uint8_t> shares(static_cast<std::size_t>(cells.x * cells.y * cells.z));
+  for (std::size_t i = 0; i < shares.size(); ++i)
+    shares[i] = static_cast<int>(i) / cells.x % cells.y < 15 ? 255 : 0;
+  frame.meshes[1].wet = {1, {-0.175f, -0.01f, -0.115f}, kCell, 0.003f, cells, shares, glm::ivec3(0), cells};
   frame.view = view;
   frame.particles = points;
   frame.particle_fluid = fluids;
