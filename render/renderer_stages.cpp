@@ -62,7 +62,7 @@ void Renderer::Parts::draw_stages_before_fluid(std::span<Picture> drawn, bool ti
   run(occludes() ? "occlusion, prepare splats" : "prepare splats", [&] {
     const float reach = splat_reach(frame.particle_radius, options);
     each(drawn, [&](Picture& p) {
-      if (drew_fluid) particles->start_placing(frame, reach, p.splats);
+      if (drew_fluid) particles->start_placing(frame, reach, p.targets.scene_depth, p.splats);
       if (occludes()) scene_pass->start_occlusion(p.targets, kOcclusionReach);
     });
     gl::finish_compute();

@@ -167,7 +167,8 @@ void ParticlesOnGpu::start_next() {
   }
 }
 
-void ParticlesOnGpu::start_placing(const Frame& frame, float splat_radius, SplatBuffers& out) const {
+void ParticlesOnGpu::start_placing(const Frame& frame, float splat_radius, const gl::Texture& scene_depth,
+                                   SplatBuffers& out) const {
   out.count = count_;
   out.shaped = moves_;
   if (count_ == 0) return;
@@ -183,6 +184,8 @@ void ParticlesOnGpu::start_placing(const Frame& frame, float splat_radius, Splat
     bind(1, out.shapes);
     bind(4, centers_);
     bind(5, ellipsoids_);
+    gl::bind_textures({&scene_depth});
+    program.set("lying", frame.wall ? glm::vec2(SmoothCenters::reach(radius_), radius_) : glm::vec2(0.0f));
   }
   if (listed) {
     bind(6, counts_);

@@ -37,8 +37,10 @@ class ParticlesOnGpu {
   std::size_t steps_left() const { return steps_.size(); }
   /// Starts the next of them, if one is left; the one after it is for after gl::finish_compute().
   void start_next();
-  /// As the view whose uniform block is bound sees them, once no step is left; likewise.
-  void start_placing(const Frame& frame, float splat_radius, SplatBuffers& out) const;
+  /// As the view whose uniform block is bound sees them, once no step is left; likewise. Where the frame has
+  /// walls, few lie on those that `scene_depth` shows (S_d).
+  void start_placing(const Frame& frame, float splat_radius, const gl::Texture& scene_depth,
+                     SplatBuffers& out) const;
 
   /// Of the frame, some of which may be of no fluid.
   std::size_t count() const { return count_; }

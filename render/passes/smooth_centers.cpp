@@ -78,8 +78,9 @@ SmoothCenters::Smoothed SmoothCenters::smooth(const glm::vec3& at, const Frame& 
   if (!frame.wall || around.weights >= shader::kLyingMany) return smoothed;
   const std::optional<WallPoint> wall = frame.wall(at, shader::kLyingFar * radius);
   if (!wall) return smoothed;
-  const float share = shader::lying_share(around, wall->normal, glm::distance(at, wall->at), radius);
-  const glm::mat3 lying = shader::lying_ellipsoid(around, wall->normal, radius);
+  const float share = shader::lying_share(around.weights, shader::neighbours_mean(around), wall->normal,
+                                          glm::distance(at, wall->at), radius);
+  const glm::mat3 lying = shader::lying_ellipsoid(around.weights, wall->normal, radius);
   // The fluid's surface stays beside its neighbours': along the wall the step is theirs.
   const float off = glm::dot(smoothed.center - wall->at, wall->normal);
   smoothed.center -= share * off * wall->normal;

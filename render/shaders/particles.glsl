@@ -16,6 +16,13 @@ ivec3 cell_of_packed(uvec2 p) {
   return ivec3(c << 11) >> 11;
 }
 
+// Where a particle's neighbours are in the mean, −1 to 1 an axis, to a thousandth.
+uint packed_mean(vec3 mean) {
+  uvec3 steps = uvec3(clamp(mean * 0.5 + 0.5, vec3(0.0), vec3(1.0)) * 1022.0 + 0.5);
+  return steps.x | steps.y << 10 | steps.z << 20;
+}
+vec3 unpacked_mean(uint steps) { return vec3(uvec3(steps, steps >> 10, steps >> 20) & 1023u) / 511.0 - 1.0; }
+
 // In Counts, after an entry each.
 int drawn_at(int entries) { return entries; }         // particles in all entries
 int seen_at_end(int entries) { return entries + 1; }  // of those, which are not deep

@@ -9,7 +9,9 @@ layout(local_size_x = 128) in;
 layout(std430, binding = 0) writeonly buffer Centers { vec4 centers[]; };  // world, fluid index; −1: not drawn
 struct Ellipsoid {
   vec4 xx_xy_xz_yy;  // m²
-  vec4 yz_zz;
+  vec2 yz_zz;
+  uint mean;  // of the neighbours (packed_mean)
+  float weights;
 };
 layout(std430, binding = 1) writeonly buffer Ellipsoids { Ellipsoid ellipsoids[]; };
 layout(std430, binding = 3) restrict readonly buffer Counts { uint counts[]; };
@@ -100,7 +102,8 @@ void main() {
       Neighbourhood around = together(own);
       mat3 e = smoothing_ellipsoid(around, lengths.x, lengths.y);
       centers[index] = vec4(particle.xyz + smoothing_step(around, lengths.x), particle.w);
-      ellipsoids[index] = Ellipsoid(vec4(e[0][0], e[0][1], e[0][2], e[1][1]), vec4(e[1][2], e[2][2], 0.0, 0.0));
+      ellipsoids[index] = Ellipsoid(vec4(e[0][0], e[0][1], e[0][2], e[1][1]), vec2(e[1][2], e[2][2]),
+                                    packed_mean(neighbours_mean(around) / lengths.x), around.weights);
     } else if (part == 0 && index < count) {
       centers[index] = particle;
     }

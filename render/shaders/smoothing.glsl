@@ -44,17 +44,20 @@ SHARED vec3 smoothing_step(Neighbourhood n, float reach) {
   return kSmoothingShare * (1.0f - kept) * way;
 }
 
+// Where its neighbours' mean is, from the particle.
+SHARED vec3 neighbours_mean(Neighbourhood n) { return n.sum / max(n.weights, 1e-9f); }
+
 // Share in which a particle lies on a wall that is so far from its centre. At the rim of a full vessel few are near, too, but they
-// go on away from the wall.
-SHARED float lying_share(Neighbourhood n, vec3 normal, float away, float radius) {
-  float mean_off = dot(n.sum, normal) / max(n.weights, 1e-9f);
-  return (1.0f - smoothstep(kLyingNear, kLyingFar, away / radius)) * (1.0f - smoothstep(kLyingFew, kLyingMany, n.weights)) *
+// go on away from the wall, as `mean` says.
+SHARED float lying_share(float weights, vec3 mean, vec3 normal, float away, float radius) {
+  float mean_off = dot(mean, normal);
+  return (1.0f - smoothstep(kLyingNear, kLyingFar, away / radius)) * (1.0f - smoothstep(kLyingFew, kLyingMany, weights)) *
          (1.0f - smoothstep(0.25f, 0.6f, mean_off / radius));
 }
 
 // m², about a centre on the wall.
-SHARED mat3 lying_ellipsoid(Neighbourhood n, vec3 normal, float radius) {
-  float high = max(kLyingHigh, kLayerHigh * n.weights) * radius;
+SHARED mat3 lying_ellipsoid(float weights, vec3 normal, float radius) {
+  float high = max(kLyingHigh, kLayerHigh * weights) * radius;
   float wide = kLyingWide * radius;
   mat3 flat_disc = mat3(wide * wide);
   float less = high * high - wide * wide;
