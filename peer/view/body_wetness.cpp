@@ -79,7 +79,7 @@ void BodyWetness::forget() {
   for (Grid& grid : grids_) {
     std::ranges::fill(grid.shares, std::uint8_t{0});
     grid.wet_low = grid.wet_high = glm::ivec3(0);
-    if (grid.version != 0) ++grid.version;
+    if (grid.version != 0) grid.version = ++version_;
   }
 }
 
@@ -129,7 +129,7 @@ void BodyWetness::dry(Grid& grid, int by) {
   const bool gone = low.x >= high.x;
   grid.wet_low = gone ? glm::ivec3(0) : low;
   grid.wet_high = gone ? glm::ivec3(0) : high;
-  ++grid.version;
+  grid.version = ++version_;
 }
 
 void BodyWetness::record(const Snapshot& snapshot) {
@@ -157,13 +157,13 @@ void BodyWetness::record(const Snapshot& snapshot) {
     for (std::size_t i = turn_; i < count; i += turns) {
       if (snapshot.fluid_index[i] != 255) changed |= wet(turned * (snapshot.positions[i] - origin), grid);
     }
-    if (changed) ++grid.version;
+    if (changed) grid.version = ++version_;
   }
 }
 
 Wetness BodyWetness::of(std::size_t body) const {
   const auto grid = std::ranges::find(grids_, body, &Grid::body);
-  if (grid == grids_.end() || grid->version == 0) return {};
+  if (grid == grids_.end() || grid->wet_low == grid->wet_high) return {};
   return {grid->version, grid->low,    grid->cell,    kOff * spacing_,
           grid->size,    grid->shares, grid->wet_low, grid->wet_high};
 }

@@ -22,7 +22,7 @@ class BodyWetness {
   /// Wets what particles are at, and dries the rest by the time since the snapshot before. All is dry where
   /// time goes back. Of many particles some are looked at, the others at the next one.
   void record(const Snapshot& snapshot);
-  /// Of a body of the scene; points into this until the next record().
+  /// Of a body of the scene, nothing of one that is dry; points into this until the next record().
   Wetness of(std::size_t body) const;
 
  private:
@@ -47,6 +47,7 @@ class BodyWetness {
 
   float spacing_;
   std::vector<Grid> grids_;
+  std::uint64_t version_ = 0;  // the last that some grid got
   double time_ = 0.0;
   double dried_ = 0.0;    // s, up to which they are dried
   std::size_t turn_ = 0;  // which particles come next

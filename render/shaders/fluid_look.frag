@@ -48,11 +48,12 @@ float back_at(vec2 pixel) {
 // How much of the way from front to back is fluid, 0–1, over a patch of five places one reach apart: in a jet and in spray, where the
 // far side is one drop's here and another's there, it is little; taken for a floor, they were flat patches of the room's colour.
 // Of one place it flips from pixel to pixel at a floor's foot, where few particles are behind each other.
-float filled(vec2 middle, float reach) {
+// taps: 5; 0 where it is not asked for, as llvmpipe goes through what is behind an if but leaves a loop.
+float filled(vec2 middle, float reach, int taps) {
   if (look_switches.x <= 0.5) return 1.0;
   float chords = 0.0;
   float spans = 1.0e-6;
-  for (int k = 0; k < 5; ++k) {
+  for (int k = 0; k < taps; ++k) {
     vec2 at = middle + reach * (k == 0 ? vec2(0.0) : k < 3 ? vec2(2 * k - 3, 0) : vec2(0, 2 * k - 7));
     ivec2 texel = clamp(ivec2(at), ivec2(0), ivec2(picture.xy) - 1);
     // Up to a body in the fluid: no chord is counted behind it.
@@ -84,7 +85,7 @@ FarSide far_side(vec3 inside, float refraction, float back, float scene, vec2 mi
   float upright = smoothstep(0.55, 0.9, abs(dot(along, up)) * inversesqrt(dot(along, along) + 1.0e-12));
   // Along a line of sight that grazes a wet wall there is some way from the splats to it.
   float by_floor = flat_enough * smoothstep(0.0, 0.25, apart) * (1.0 - upright);
-  if (by_floor > 0.0) by_floor *= smoothstep(0.4, 0.9, filled(middle, reach.y));
+  by_floor *= smoothstep(0.4, 0.9, filled(middle, reach.y, by_floor > 0.0 ? 5 : 0));
   return FarSide(by_floor, smoothstep(1.5, 3.0, apart) * upright);
 }
 
@@ -155,21 +156,23 @@ Lens lens_here(vec3 here, vec3 n, vec3 inside, float refraction, float thickness
   Lens lens = Lens(0.0, vec3(0.0));
   if (look_switches.x <= 0.5) return lens;
   lens.share = smoothstep(0.5, 2.0, (scene - back) / splat.x) * (1.0 - smoothstep(6.0, 9.0, thickness / splat.x));
-  if (lens.share <= 0.0) return lens;
   // Nor at the edge of much fluid: the way through it a little further in.
   float beside = clamp(7.0 * splat.x * splat.y / -here.z, 4.0, 96.0);
   float most = 0.0;
-  for (int k = 0; k < 8; ++k) {
+  if (lens.share <= 0.0) return lens;
+  int taps = lens.share > 0.0 ? 8 : 0;  // as in filled()
+  for (int k = 0; k < taps; ++k) {
     float angle = 0.7853982 * float(k);
     vec2 at = middle + ((k & 1) == 0 ? beside : 0.5 * beside) * vec2(cos(angle), sin(angle));
     most = max(most, texture(summed_chord, at * picture.zw).r);
   }
   lens.share *= 1.0 - smoothstep(4.5, 7.0, most / splat.x);
-  if (lens.share <= 0.0) return lens;
   float reach = clamp(0.5 * splat.x * splat.y / -here.z, 2.0, 16.0);
   float many = smoothstep(1.8, 3.0, thickness / splat.x);
   vec2 growth = vec2(0.0);
-  for (int axis = 0; axis < 2; ++axis) {
+  if (lens.share <= 0.0) return lens;
+  int axes = lens.share > 0.0 ? 2 : 0;
+  for (int axis = 0; axis < axes; ++axis) {
     vec2 off = axis == 0 ? vec2(reach, 0.0) : vec2(0.0, reach);
     growth[axis] = way_at(middle + off, many) - way_at(middle - off, many);
   }
@@ -178,9 +181,9 @@ Lens lens_here(vec3 here, vec3 n, vec3 inside, float refraction, float thickness
   vec3 out_at = leaving_place(here, inside, thickness);
   lens.light = mirrored(mat3(world_from_eye) * way);
   // A body that the picture shows, where the way leads to one: guessed at the depth of what is behind, then at that of what is there.
-  if (way.z > -0.1) return lens;
+  int guesses = lens.share > 0.0 && way.z <= -0.1 ? 2 : 0;
   float depth = min(scene, camera.w);
-  for (int guess = 0; guess < 2; ++guess) {
+  for (int guess = 0; guess < guesses; ++guess) {
     vec3 place = out_at + way * (max(depth + out_at.z, 0.0) / -way.z);
     vec2 at = ((place.xy / (unproject.xy * max(-place.z, 1.0e-3)) - unproject.zw) * 0.5 + 0.5) * picture.xy;
     if (any(lessThan(at, vec2(0.0))) || any(greaterThanEqual(at, picture.xy))) return lens;

@@ -8,9 +8,19 @@ layout(binding = 9) uniform sampler2D fluid_shadow;  // dimming per channel; 1 â
 
 const float kLightWide = 0.08;  // tangent of half the angle that the light has for shadows
 #ifdef FAST
-const int kSoftTaps = 16;
+const int kSoftTaps = 12;
+const float kTapsATexel = 1.2;
+const int kSharpTaps = 2;
+const float kSharpWide = 1.0606602;  // texels
+const vec2 kSharpWay = vec2(0.70710678, 0.70710678);
+const vec2 kSharpTurn = vec2(-1.0, 0.0);
 #else
 const int kSoftTaps = 32;
+const float kTapsATexel = 4.0;
+const int kSharpTaps = 4;
+const float kSharpWide = 1.4115594;
+const vec2 kSharpWay = vec2(0.38964, 0.92097);
+const vec2 kSharpTurn = vec2(0.0, 1.0);
 #endif
 
 vec3 in_shadow_map(vec3 world) { return (shadow_from_world * vec4(world, 1.0)).xyz; }
@@ -27,41 +37,33 @@ vec2 slope_in_shadow_map(vec3 normal) {
 // normal: unit, world. The look-up moves off the surface, so that a surface does not shade itself.
 float light_past_meshes(vec3 world, vec3 normal) {
   vec3 at = in_shadow_map(world + normal * key_light.w);
-  bool outside = to_light_world.w < 0.5 || any(greaterThan(abs(at - 0.5), vec3(0.5)));
-  if (outside) return 1.0;
   float texel = to_light_eye.w;
   vec2 tile = at.xy / (8.0 * texel);
-  vec2 ends = texelFetch(shadow_reach, ivec2(tile), 0).rg;
+  vec2 ends = texelFetch(shadow_reach, ivec2(clamp(tile, vec2(0.0), vec2(textureSize(shadow_reach, 0) - 1))), 0).rg;
+  bool outside = to_light_world.w < 0.5 || any(greaterThan(abs(at - 0.5), vec3(0.5)));
+  if (outside || ends.x >= at.z) return 1.0;
   float facing = clamp(dot(normal, to_light_world.xyz), 0.1, 1.0);
   // What a plane through the point has in so many texels; nearer than that a soft edge is as wide as a texel.
   float own = 0.5 * (look_switches.z + 8.0) * key_light.w * sqrt(1.0 - facing * facing) / (facing * look_switches.y);
-  if (ends.y < at.z - own) return 0.0;
-  if (ends.x < at.z - own) {
-    float nearest = texture(shadow_reach, tile / vec2(textureSize(shadow_reach, 0))).r;
-    float wide = 2.0 * kLightWide * max(at.z - nearest, 0.0) * look_switches.y / key_light.w;
-    wide = clamp(wide, 1.0, look_switches.z) * texel;
-    vec2 slope = slope_in_shadow_map(normal);
-    float reaching = 0.0;
-    for (int k = 0; k < kSoftTaps; ++k) {
-      // On a spiral by the golden angle, each for as much area.
-      float angle = 2.3999632 * float(k);
-      vec2 off = wide * sqrt((float(k) + 0.5) / float(kSoftTaps)) * vec2(cos(angle), sin(angle));
-      reaching += texture(shadow_map, vec3(at.xy + off, at.z + dot(slope, off)));
-    }
-    return reaching / float(kSoftTaps);
+  float nearest = texture(shadow_reach, tile / vec2(textureSize(shadow_reach, 0))).r;
+  bool soft = ends.x < at.z - own;
+  float wide = 2.0 * kLightWide * max(at.z - nearest, 0.0) * look_switches.y / key_light.w;
+  wide = soft ? clamp(wide, 1.0, look_switches.z) : kSharpWide;
+  vec2 slope = soft ? slope_in_shadow_map(normal) : vec2(0.0);
+  bool lit = outside || ends.x >= at.z;
+  bool dark = ends.y < at.z - own;
+  // llvmpipe goes through both sides of an if, but leaves a loop: so one loop has all taps. Soft ones lie on a spiral by the golden angle,
+  // each for as much area; sharp ones on a circle, turned so that their footprints do not line up with the texels.
+  int taps = lit || dark ? 0 : soft ? clamp(int(kTapsATexel * wide), 4, kSoftTaps) : kSharpTaps;
+  vec2 turn = soft ? vec2(-0.73736888, 0.67549029) : kSharpTurn;
+  vec2 way = kSharpWay;
+  float reaching = 0.0;
+  for (int k = 0; k < taps; ++k) {
+    vec2 off = wide * texel * (soft ? sqrt((float(k) + 0.5) / float(taps)) : 1.0) * way;
+    reaching += texture(shadow_map, vec3(at.xy + off, at.z + dot(slope, off)));
+    way = vec2(turn.x * way.x - turn.y * way.y, turn.y * way.x + turn.x * way.y);
   }
-#ifdef FAST
-  // Two bilinear taps across a texel's diagonal: the steps of a map that is turned against the picture melt.
-  vec2 across = texel * vec2(0.75, 0.75);
-  return 0.5 * (texture(shadow_map, vec3(at.xy - across, at.z)) + texture(shadow_map, vec3(at.xy + across, at.z)));
-#else
-  // Four bilinear taps, turned so that their footprints do not line up with the texels.
-  float reaching = texture(shadow_map, vec3(at.xy + texel * vec2(0.55, 1.3), at.z));
-  reaching += texture(shadow_map, vec3(at.xy + texel * vec2(-1.3, 0.55), at.z));
-  reaching += texture(shadow_map, vec3(at.xy + texel * vec2(-0.55, -1.3), at.z));
-  reaching += texture(shadow_map, vec3(at.xy + texel * vec2(1.3, -0.55), at.z));
-  return 0.25 * reaching;
-#endif
+  return dark ? 0.0 : reaching / float(taps);
 }
 
 // What fluid above leaves of the light for a point on the fluid's own surface. It fades in from three to nine splat radii
