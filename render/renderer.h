@@ -41,7 +41,7 @@ struct ColorConfig {
 /// How much is spent on looks where the paper leaves it open.
 enum class Quality : std::uint8_t {
   kAuto,  ///< kFast where a CPU draws (llvmpipe), else kFull
-  kFast,  ///< two shadow taps, shadow map of 3/4 the size, no occlusion of meshes, only the
+  kFast,  ///< a third of the shadow taps, shadow map of 3/4 the size, no occlusion of meshes, only the
           ///< sides of glass that face the eye and are before the fluid
   kFull,  ///< with all of these, and the bodies mirrored in the fluid
 };
