@@ -11,6 +11,7 @@
 #include <string_view>
 #include <vector>
 
+#include "scenes/task.h"
 #include "sim/math/distance_field.h"
 #include "sim/math/pose.h"
 #include "sim/math/result.h"
@@ -230,6 +231,7 @@ struct Scene {
   std::vector<Grip> grips;
   std::vector<Gauge> gauges;  ///< these two change nothing that moves
   std::vector<Region> regions;
+  std::vector<TaskStep> task;  ///< may be empty. Not sent
   Camera camera;
   glm::vec3 light_direction{-0.4f, -1.0f, -0.35f};  ///< the way the light travels
 

@@ -134,10 +134,15 @@ const Measurement& Instruments::measure(const World& world) {
     });
   }
   result_.in_solids = static_cast<std::uint64_t>(std::count(inside_.begin(), inside_.end(), 1));
+  const std::size_t fluids = particle_mass_.size();
   result_.masses.assign(regions_.size(), 0.0);
+  result_.fluid_masses.assign(regions_.size() * fluids, 0.0);
   for (std::size_t r = 0; r < regions_.size(); ++r) {
-    find_inside(regions_[r], 0.0,
-                [&](std::size_t i) { result_.masses[r] += particle_mass_[snapshot_.fluid_index[i]]; });
+    find_inside(regions_[r], 0.0, [&](std::size_t i) {
+      const std::size_t fluid = snapshot_.fluid_index[i];
+      result_.masses[r] += particle_mass_[fluid];
+      result_.fluid_masses[r * fluids + fluid] += particle_mass_[fluid];
+    });
   }
   result_.levels.clear();
   result_.pressures.clear();

@@ -19,6 +19,7 @@ struct Measurement {
   std::vector<double> levels;          ///< m along up, one a gauge; NaN where no fluid is over or under it
   std::vector<double> pressures;       ///< Pa at the place of each gauge; NaN where it is not in fluid
   std::vector<double> masses;          ///< kg, one a region
+  std::vector<double> fluid_masses;    ///< kg, one a region and fluid: region · fluids + fluid
 };
 
 /// Where the fluid's surface is on the line through `at` along `up` (unit), m along up: from above down to

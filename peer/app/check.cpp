@@ -169,6 +169,13 @@ void print_scene(const Scene& scene, const Counted& counted) {
     std::printf("  measured    %td bodies, %zu gauges, %zu regions\n", measured, scene.gauges.size(),
                 scene.regions.size());
   }
+  if (!scene.task.empty()) std::printf("  task        %zu steps\n", scene.task.size());
+  for (const TaskStep& step : scene.task) {
+    std::printf("    %s\n      until %s", step.say.c_str(), in_words(step.until, scene).c_str());
+    if (step.hold > 0.0) std::printf(", for %.3g s", step.hold);
+    if (step.within > 0.0) std::printf("; within %.3g s", step.within);
+    std::printf("\n");
+  }
   std::size_t thinnest_body = 0;
   const double wall = thinnest_wall(scene, &thinnest_body);
   if (thinnest_body < scene.bodies.size() && wall < 1e6) {

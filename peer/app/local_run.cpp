@@ -68,6 +68,10 @@ Result<std::unique_ptr<LiveRun>> LocalRun::create(const Prepared& prepared, Devi
   if (!followed) return followed.error();
   run->host_->add_tap(run->hands_tap_);
   run->host_->add_tap(run->window_tap_);
+  if (!scene.task.empty()) {
+    run->task_tap_ = std::make_unique<TaskTap>(scene, prepared.sampled);
+    run->host_->add_tap(*run->task_tap_);
+  }
   ServoOptions servo;
   servo.steps = &run->hands_tap_.steps();
   Result<std::unique_ptr<OwnHands>> own =
@@ -162,6 +166,7 @@ Rates LocalRun::world_rates() {
   rates.step_ms = progress.step_ms;
   rates.status_steps = progress.status_steps;
   rates.lost = progress.lost;
+  if (task_tap_) rates.task = task_tap_->lines();
   return rates;
 }
 
@@ -187,6 +192,7 @@ void LocalRun::report(RunSummary& s) const {
   s.backend = backend_name(prepared_.backend);
   s.threads = prepared_.threads;
   if (!prepared_.folder.empty()) s.files = {"wrenches.csv", "poses.csv"};
+  if (task_tap_) report_task(prepared_.scene, task_tap_->done(), s);
   files_->report(host_->world(), s);
   for (std::string& sentence : hands_tap_.never_acted(prepared_.scene))
     s.problems.push_back(std::move(sentence));

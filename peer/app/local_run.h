@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "host/host.h"
+#include "host/task_tap.h"
 #include "net/channel.h"
 #include "peer/app/hands_tap.h"
 #include "peer/app/live_run.h"
@@ -54,6 +55,7 @@ class LocalRun final : public LiveRun {
   std::unique_ptr<Channel> channel_;
   HandsTap hands_tap_;
   WindowTap window_tap_;
+  std::unique_ptr<TaskTap> task_tap_;  // null where the scene has no task
   std::unique_ptr<WorldFiles> files_;
   std::unique_ptr<Lockstep> lockstep_;  // null where the run is paced
   FluidDemand fluid_demand_;            // of hands that feel

@@ -38,4 +38,15 @@ void report_left(const Diagnostics& end, const Diagnostics& start, const Plan& p
   s.fluid_mass_end = end.mass;
 }
 
+void report_task(const Scene& scene, const std::vector<TaskState::Done>& done, RunSummary& summary) {
+  for (std::size_t i = 0; i < scene.task.size(); ++i) {
+    TaskStepSummary step{scene.task[i].say, i < done.size(), false, 0.0};
+    if (step.done) {
+      step.late = done[i].late;
+      step.took = done[i].took;
+    }
+    summary.task.push_back(std::move(step));
+  }
+}
+
 }  // namespace slosh

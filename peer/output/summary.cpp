@@ -113,6 +113,31 @@ std::string world_words(const RunSummary& s) {
   return text;
 }
 
+nlohmann::ordered_json task_json(const std::vector<TaskStepSummary>& task) {
+  nlohmann::ordered_json steps = nlohmann::ordered_json::array();
+  for (const TaskStepSummary& step : task) {
+    steps.push_back({{"say", step.say}, {"done", step.done}});
+    if (!step.done) continue;
+    steps.back()["took_s"] = step.took;
+    steps.back()["late"] = step.late;
+  }
+  return steps;
+}
+
+std::string task_words(const std::vector<TaskStepSummary>& task) {
+  if (task.empty()) return {};
+  std::size_t done = 0;
+  double took = 0.0;
+  std::string steps;
+  for (const TaskStepSummary& step : task) {
+    done += step.done ? 1 : 0;
+    took += step.took;
+    steps += step.done ? format("  %5.1f s  ", step.took) : std::string("  not done ");
+    steps += step.say + (step.late ? " (late)\n" : "\n");
+  }
+  return format("Task: %zu of %zu steps done, in %.1f s.\n", done, task.size(), took) + steps;
+}
+
 }  // namespace
 
 std::vector<std::string> status_words(std::uint32_t status) {
@@ -209,6 +234,7 @@ Json to_json(const RunSummary& s) {
   json["samples_lost"] = s.samples_lost;
   json["fluid_mass_kg"] = {{"start", s.fluid_mass_start}, {"end", s.fluid_mass_end}};
   if (s.measured.interval > 0.0) json["measured"] = to_json(s.measured);
+  if (!s.task.empty()) json["task"] = task_json(s.task);
   json["devices"] = devices;
   json["backend"] = s.backend;
   json["threads"] = s.threads;
@@ -256,6 +282,7 @@ std::string in_words(const RunSummary& s) {
         s.height, s.fast_picture ? "fast" : "full", s.frame_ms.p50,
         s.frames_dropped == 0 ? "" : (std::string(", ") + grouped(s.frames_dropped) + " dropped").c_str());
   }
+  text += task_words(s.task);
   text += left_words(s);
   if (s.particles_in_solids > 0)
     text += s.particles_in_solids == 1

@@ -30,6 +30,14 @@ struct DeviceSummary {
   double clipped = 0.0;      ///< s in which more was asked of the device than it gives
 };
 
+/// A step of a guided task.
+struct TaskStepSummary {
+  std::string say;
+  bool done = false;
+  bool late = false;  ///< done, after its time
+  double took = 0.0;  ///< s
+};
+
 /// What the network was like for a peer of somebody else's world.
 struct NetworkSummary {
   std::string host;  ///< address
@@ -103,6 +111,7 @@ struct RunSummary {
   double fluid_mass_end = 0.0;    ///< kg still in the world
   MeasuredRun measured;
   std::vector<DeviceSummary> devices;
+  std::vector<TaskStepSummary> task;  ///< all of its steps; empty where the scene has none
   std::string backend;
   int threads = 1;
   Machine machine;

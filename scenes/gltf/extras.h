@@ -30,6 +30,8 @@ class Extras {
   /// `owner` begins every error: "file: node 'x'". The object must outlive this.
   Extras(const nlohmann::json& object, std::string owner) : object_(object), owner_(std::move(owner)) {}
 
+  /// Somebody else reads it.
+  void known(const char* key) { find(key); }
   bool has(const char* key) const { return object_.contains(key) && !object_[key].is_null(); }
   double number(const char* key, double fallback, Range range);
   int integer(const char* key, int fallback, int low, int high);

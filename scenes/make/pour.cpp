@@ -48,6 +48,29 @@ Solid batter() {
   return lathe(profile, 64);
 }
 
+/// What is in the pan, and a little above its rim.
+Solid pan_inside() {
+  const double inner = kPanRadius - 0.001;
+  const double low = kWall + 0.001, high = kWall + 1.5 * kPanDepth;
+  return lathe({{0.0, low}, {inner, low}, {inner, high}, {0.0, high}}, 48);
+}
+
+nlohmann::json steps() {
+  const auto in_pan = [](double kg) { return nlohmann::json{{"mass_kg", "pan_inside"}, {"at_least", kg}}; };
+  const nlohmann::json upright{{"tilt_deg", "bowl_body"}, {"at_most", 15.0}};
+  const nlohmann::json still{{"speed_m_s", "pan_body"}, {"at_most", 0.05}};
+  return {{{"say", "Tilt the bowl until batter runs into the pan."},
+           {"hint", "Turn the bowl about its lip, over the pan's middle."},
+           {"until", in_pan(0.02)}},
+          {{"say", "Pour until the pan holds 0.4 kg."},
+           {"hint", "Tilt further: batter is thick, and takes its time."},
+           {"until", in_pan(0.4)},
+           {"within_s", 10.0}},
+          {{"say", "Set the bowl upright, and hold the pan still."},
+           {"until", {{"all", nlohmann::json::array({upright, still})}}},
+           {"hold_s", 0.3}}};
+}
+
 Solid pan() {
   const double outer = kPanRadius + kWall;
   const std::vector<glm::dvec2> profile{
@@ -87,6 +110,7 @@ SceneWriter make_pour() {
                       {"duration_s", kPourDuration},
                       {"still_s", 2.2},
                       {"settle_s", kSettle},
+                      {"task", steps()},
                       {"domain_min_m", list({-0.45, -0.15, -0.35})},
                       {"domain_max_m", list({0.50, 0.75, 0.35})}});
   add_table(writer, 0.7, 0.5);
@@ -112,6 +136,8 @@ SceneWriter make_pour() {
                    {"roughness", 0.4}});
   add_held(writer, "bowl", bowl_node, {{-0.13, kBowlRim - 0.014, 0.0}, {1.0, 0.0, 0.0, 0.0}}, 0, bowl_pose);
   add_held(writer, "pan", pan_node, {{0.17, 0.036, 0.0}, {1.0, 0.0, 0.0, 0.0}}, 1, pan_pose);
+  writer.add_node("pan_inside", writer.add_mesh("pan_inside", pan_inside(), look), {}, {{"slosh", "region"}},
+                  pan_node);
   writer.add_camera({0.21, 0.60, 0.84}, {0.01, 0.195, 0.0}, 35.0);
   return writer;
 }

@@ -74,6 +74,7 @@ Problem order_grips(Reading& reading);            ///< after all grips: by `devi
 Problem read_hand(Reading& reading, int node);    ///< after all grips
 Problem read_gauge(Reading& reading, int node);   ///< after all bodies
 Problem read_region(Reading& reading, int node);  ///< after all bodies
+Problem read_task(Reading& reading);              ///< after everything that has a name
 Problem read_camera(Reading& reading);            ///< after everything with a size; no error, as of pictures
 Problem read_domain(Reading& reading);            ///< likewise
 Problem fit_spacing(Reading& reading);  ///< likewise: a coarsest spacing that was not given fits the walls

@@ -63,6 +63,7 @@ Problem read_scene_fields(Reading& reading) {
     extras.fail("spacing_m", "is " + gltf::short_number(scene.spacing),
                 "Give 0 (automatic) or at least 0.0001");
   }
+  extras.known("task");                                              // read_task takes it up
   extras.vector("domain_min_m", glm::dvec3(0.0), gltf::kAnyNumber);  // read_domain takes them up
   extras.vector("domain_max_m", glm::dvec3(0.0), gltf::kAnyNumber);
   Problem fields_problem;

@@ -146,6 +146,7 @@ std::optional<Scene> read_stages(const gltf::Document& document, std::vector<Err
   stages.nodes(read_hand, NodeKind::kHand);
   stages.nodes(read_gauge, NodeKind::kGauge);
   stages.nodes(read_region, NodeKind::kRegion);
+  stages.whole(read_task, true);
   stages.whole(read_camera, true);
   stages.whole(read_domain, true);
   stages.whole(fit_spacing, true);

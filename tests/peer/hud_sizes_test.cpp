@@ -102,6 +102,33 @@ TEST_P(HudSizes, PanelsCoverNoMoreThanAThirdWhateverIsSaid) {
   }
 }
 
+TEST_P(HudSizes, ATaskHasItsPlaceBesideThem) {
+  for (const std::size_t hands : {0u, 1u, 2u, 4u}) {
+    const Scene bare = scene(hands);
+    Hud hud(bare, facts());
+    hud.record(snapshot(hands));
+    Rates said = rates();
+    frame([&] { hud.draw(said); });
+    EXPECT_EQ(area(hud.task_panel()), 0.0f);
+    said.task = {"step 2 of 12, 8 s left", "Pour until the pan holds 0.4 kg.",
+                 "fluid in pan_inside 0.021 kg, wanted at least 0.4", ""};
+    for (const char* words :
+         {"Slowly.",
+          "Tilt the bowl further: batter is thick, and takes its time until it runs over the lip and into "
+          "the pan's middle, from where it spreads by itself."}) {
+      said.task.hint = words;
+      frame([&] { hud.draw(said); });
+      const Rect task = hud.task_panel();
+      EXPECT_GT(area(task), 0.0f);
+      EXPECT_LE(area(task), 0.3f * picture().x * picture().y);
+      for (const Rect& other : hud.panels()) EXPECT_EQ(task.shared_area(other), 0.0f) << hands << " hands";
+      EXPECT_LE(outside(), 0.5f);
+      EXPECT_LE(cut_off_below(), 1.0f);
+      EXPECT_LE(cut_off_right(), 1.0f);
+    }
+  }
+}
+
 /// What a film shows of them: hands and bowls move, warnings and rates come and go.
 TEST_P(HudSizes, PanelsStayWhereTheyAreThroughAFilm) {
   const Scene bare = scene(2);

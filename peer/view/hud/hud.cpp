@@ -14,6 +14,8 @@ namespace {
 
 constexpr double kChartSeconds = 5.0;
 constexpr double kStatusSeconds = 1.5;  // simulated: a status of one step is shown long enough to be read
+constexpr float kTaskLetters = 52.0f;   // of a line of the task's panel, at most
+constexpr float kMostTask = 0.3f;       // of the picture's height
 constexpr float kMinForce = 1.0f;       // N, that a chart's height is at least
 constexpr float kMinTorque = 0.05f;     // N·m
 
@@ -236,6 +238,31 @@ void Hud::draw_hands(const glm::vec2& picture) {
   ImGui::End();
 }
 
+/// Along the top, in what the run's panel leaves of it; under the hands' where that is there, too. What there
+/// is no room for is left out, the help first.
+void Hud::draw_task(const TaskLines& task, const glm::vec2& picture) {
+  using Kind = PanelRow::Kind;
+  std::vector<PanelRow> rows = {
+      {Kind::kTitle, task.title, {}}, {Kind::kLine, {}, {}}, {Kind::kText, task.say, {}}};
+  if (!task.now.empty()) rows.push_back({Kind::kText, task.now, {}});
+  if (!task.hint.empty()) rows.push_back({Kind::kWarning, task.hint, {}});
+  const ImVec2 padding = ImGui::GetStyle().WindowPadding;
+  const float room = picture.x - layout_->run_width - 3.0f * kHudMargin;
+  const float letter = layout_->letters * ImGui::CalcTextSize("0").x;
+  const float width = std::min(room, kTaskLetters * letter + 2.0f * padding.x);
+  const float inner = width - 2.0f * padding.x;
+  const float most = kMostTask * picture.y - 2.0f * padding.y;
+  if (!task.hint.empty() && rows_height(rows, inner, layout_->letters) > most) rows.pop_back();
+  cut_rows(rows, inner, most, layout_->letters);
+  const float height = rows_height(rows, inner, layout_->letters) + 2.0f * padding.y;
+  const float left = kHudMargin + (layout_->run_at_right ? 0.0f : layout_->run_width + kHudMargin);
+  const float top = layout_->hands_on_top ? hands_panel_.high.y + kHudMargin : kHudMargin;
+  const glm::vec2 low(left + 0.5f * (room - width), top);
+  task_panel_ = {low, low + glm::vec2(width, height)};
+  if (begin_panel("task", task_panel_, layout_->letters)) draw_rows(rows, inner);
+  ImGui::End();
+}
+
 void Hud::draw(const Rates& rates) {
   ImGui::PushStyleVar(ImGuiStyleVar_WindowRounding, 4.0f);
   ImGui::PushStyleVar(ImGuiStyleVar_WindowBorderSize, 0.0f);
@@ -246,6 +273,8 @@ void Hud::draw(const Rates& rates) {
   draw_run(rates, picture);
   hands_panel_ = {};
   if (layout_->hands_size.y > 0.0f) draw_hands(picture);
+  task_panel_ = {};
+  if (!rates.task.title.empty()) draw_task(rates.task, picture);
   ImGui::PopStyleVar(3);
 }
 

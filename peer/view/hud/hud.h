@@ -45,6 +45,8 @@ class Hud {
   void draw(const Rates& rates);
   /// Where the panels lie in what draw() drew last, in Dear ImGui's pixels.
   std::array<Rect, 2> panels() const { return {run_panel_, hands_panel_}; }
+  /// Likewise; empty without a task.
+  Rect task_panel() const { return task_panel_; }
 
   /// Whether the panels have their places: from the first picture on, anew where its size changes.
   bool placed() const { return layout_.has_value(); }
@@ -68,6 +70,7 @@ class Hud {
   void lay_out(const glm::vec2& picture);
   void draw_run(const Rates& rates, const glm::vec2& picture);
   void draw_hands(const glm::vec2& picture);
+  void draw_task(const TaskLines& task, const glm::vec2& picture);
   void draw_hand(std::size_t device, float width) const;
   void draw_short_hand(std::size_t device, float width) const;
 
@@ -82,6 +85,7 @@ class Hud {
   }();  // simulated s, a StatusBit each
   Rect run_panel_;
   Rect hands_panel_;
+  Rect task_panel_;
   std::optional<HudLayout> layout_;
   glm::vec2 laid_out_for_{0.0f};  // px
   LetterSize laid_out_in_;

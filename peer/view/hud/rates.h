@@ -7,6 +7,8 @@
 #include <mutex>
 #include <string>
 
+#include "scenes/task.h"
+
 namespace slosh {
 
 struct Rates {
@@ -23,6 +25,7 @@ struct Rates {
   double start = 0.0;      ///< simulated s when this person's run began
   std::string connection;  ///< the network in a few words; empty without one
   std::string people;      ///< who is here, a line each; empty when alone
+  TaskLines task;
 };
 
 /// Written by the thread that watches the run, read by the one that draws. Neither is the device loop.

@@ -70,6 +70,7 @@ FIELDS = {
         ("title", "", "A scene", None, None, "One line"),
         ("duration_s", "s", 10.0, 1e-3, 86400.0, "How long the scripted hands are played"),
         ("still_s", "s", 0.0, 0.0, 86400.0, "When final.png is taken; 0: at the end of the film"),
+        ("task", "", "", None, None, "Steps of a guided task, as JSON: scenes/TASKS.md"),
         ("settle_s", "s", 1.0, 0.0, 60.0, "At rest before the run begins; 0: as it stands here"),
         ("spacing_m", "m", 0.01, 0.0, 1.0, "Between particles; 0, or without it: as fine as keeps real time"),
         ("spacing_min_m", "m", 0.004, 1e-4, 1.0, "The finest that is chosen"),

@@ -1,0 +1,106 @@
+#include "host/guided_task.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace slosh {
+namespace {
+
+constexpr double kRounding = 1e-9;  // s
+
+bool asks_for_fluid(const Goal& goal) {
+  return goal.kind == GoalKind::kMass || goal.kind == GoalKind::kLevel ||
+         std::ranges::any_of(goal.parts, asks_for_fluid);
+}
+
+std::size_t at(int index) {
+  return static_cast<std::size_t>(index);
+}
+
+}  // namespace
+
+GuidedTask::GuidedTask(const Scene& scene, const SampledScene& sampled)
+    : scene_(scene), instruments_(scene, sampled) {
+  if (const double g = glm::length(scene.gravity); g > 0.0) up_ = -scene.gravity / g;
+}
+
+double GuidedTask::measure(const Goal& goal) const {
+  switch (goal.kind) {
+    case GoalKind::kMass:
+      return goal.other < 0 ? fluid_->masses[at(goal.thing)]
+                            : fluid_->fluid_masses[at(goal.thing) * scene_.fluids.size() + at(goal.other)];
+    case GoalKind::kLevel:
+      return fluid_->levels[at(goal.thing)];
+    case GoalKind::kTilt: {
+      const glm::dquat turned = bodies_.bodies[at(goal.thing)].pose.orientation *
+                                glm::conjugate(scene_.bodies[at(goal.thing)].pose.orientation);
+      return glm::degrees(std::acos(std::clamp(glm::dot(turned * up_, up_), -1.0, 1.0)));
+    }
+    case GoalKind::kSpeed:
+      return glm::length(bodies_.bodies[at(goal.thing)].twist.linear);
+    case GoalKind::kDistance:
+      return glm::distance(bodies_.bodies[at(goal.thing)].center_of_mass,
+                           bodies_.bodies[at(goal.other)].center_of_mass);
+    case GoalKind::kForce:
+      return glm::length(bodies_.grips[at(goal.thing)].on_hand.force);
+    case GoalKind::kAll:
+    case GoalKind::kAny:
+    case GoalKind::kNot:
+      break;
+  }
+  return std::numeric_limits<double>::quiet_NaN();
+}
+
+bool GuidedTask::met(const Goal& goal) const {
+  const auto is_met = [this](const Goal& part) { return met(part); };
+  if (goal.kind == GoalKind::kAll) return std::ranges::all_of(goal.parts, is_met);
+  if (goal.kind == GoalKind::kAny) return std::ranges::any_of(goal.parts, is_met);
+  if (goal.kind == GoalKind::kNot) return !met(goal.parts.front());
+  const double value = measure(goal);
+  return value >= goal.at_least && value <= goal.at_most;  // NaN is neither
+}
+
+const Goal* GuidedTask::asked_of(const Goal& goal) const {
+  if (goal.parts.empty()) return &goal;
+  if (goal.kind == GoalKind::kAll) {
+    const auto open = std::ranges::find_if(goal.parts, [this](const Goal& part) { return !met(part); });
+    return asked_of(open == goal.parts.end() ? goal.parts.front() : *open);
+  }
+  return asked_of(goal.parts.front());
+}
+
+void GuidedTask::look(const World& world) {
+  const TaskStep& step = scene_.task[state_.done.size()];
+  world.fill(bodies_);
+  if (asks_for_fluid(step.until)) fluid_ = &instruments_.measure(world);
+  state_.asked = asked_of(step.until);
+  state_.measured = measure(*state_.asked);
+  const bool is_met = met(step.until);
+  state_.held = is_met && was_met_ ? state_.held + (world.time() - state_.now) : 0.0;
+  was_met_ = is_met;
+  state_.now = world.time();
+  if (!is_met || state_.held + kRounding < step.hold) return;
+  const double took = state_.now - state_.begun;
+  state_.done.push_back({took, step.within > 0.0 && took > step.within});
+  state_.begun = state_.now;
+  state_.held = 0.0;
+  state_.asked = nullptr;
+  was_met_ = false;
+}
+
+bool GuidedTask::follow(const World& world) {
+  const double time = world.time();
+  if (!begun_ || time < state_.now - kRounding) {
+    state_ = {};
+    state_.begun = state_.now = next_ = time;
+    begun_ = true;
+    was_met_ = false;
+  }
+  if (time + kRounding < next_ || state_.done.size() == scene_.task.size()) return false;
+  next_ = kEvery * (std::floor((time + kRounding) / kEvery) + 1.0);
+  look(world);
+  return true;
+}
+
+}  // namespace slosh

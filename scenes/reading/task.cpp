@@ -1,0 +1,194 @@
+// The scene's guided task: steps, goals, and what they name (TASKS.md).
+#include <algorithm>
+
+#include "net/text/clean.h"
+#include "net/text/nearest.h"
+#include "scenes/reading/reading.h"
+
+namespace slosh::reading {
+namespace {
+
+using nlohmann::json;
+
+constexpr std::size_t kMaxWords = 300;  // bytes of a sentence or a hint
+
+struct Measured {
+  const char* key;
+  GoalKind kind;
+  const char* of;  // what it names
+};
+constexpr Measured kMeasured[] = {
+    {"mass_kg", GoalKind::kMass, "region"},      {"level_m", GoalKind::kLevel, "gauge"},
+    {"tilt_deg", GoalKind::kTilt, "body"},       {"speed_m_s", GoalKind::kSpeed, "body"},
+    {"distance_m", GoalKind::kDistance, "body"}, {"force_n", GoalKind::kForce, "grip"},
+};
+struct Together {
+  const char* key;
+  GoalKind kind;
+};
+constexpr Together kTogether[] = {{"all", GoalKind::kAll}, {"any", GoalKind::kAny}, {"not", GoalKind::kNot}};
+
+template <class Thing>
+std::vector<std::string> names_of(const std::vector<Thing>& things) {
+  std::vector<std::string> names;
+  for (const Thing& thing : things) names.push_back(thing.name);
+  return names;
+}
+
+/// Reads goals, and keeps what is wrong with them.
+class Goals {
+ public:
+  explicit Goals(Reading& reading) : reading_(reading) {}
+
+  Goal read(const json& value, const std::string& owner, int depth = 0) {
+    Goal goal;
+    if (!value.is_object()) {
+      fail(owner, "is no goal", "Give one as {\"mass_kg\": \"pan_inside\", \"at_least\": 0.15}");
+      return goal;
+    }
+    if (depth > kDeepestGoal) {
+      fail(owner, "is within more than " + std::to_string(kDeepestGoal) + " other goals",
+           "Put it together from fewer");
+      return goal;
+    }
+    json own = value;
+    for (const Together& together : kTogether) own.erase(together.key);
+    gltf::Extras fields(own, owner);
+    int kinds = 0;
+    for (const Measured& measured : kMeasured) {
+      if (!fields.has(measured.key)) continue;
+      kinds += 1;
+      goal.kind = measured.kind;
+      goal.name = clean_text(fields.text(measured.key, ""), kMaxWords);
+      goal.thing = find(goal.name, names_of(measured.kind), measured.of, owner + ": extras." + measured.key);
+    }
+    for (const Together& together : kTogether) {
+      if (!value.contains(together.key)) continue;
+      kinds += 1;
+      goal.kind = together.kind;
+      read_parts(value[together.key], owner + ": extras." + together.key, depth, goal);
+    }
+    if (kinds != 1) {
+      fail(owner, kinds == 0 ? "says nothing that can be measured" : "says more than one thing to measure",
+           "Give one of mass_kg, level_m, tilt_deg, speed_m_s, distance_m, force_n, all, any, not; several "
+           "goals go "
+           "together by all or any");
+      return goal;
+    }
+    if (goal.kind < GoalKind::kAll) read_limits(fields, owner, goal);
+    for (const std::vector<Error>& wrong : {fields.errors(), fields.foreign()})
+      errors.insert(errors.end(), wrong.begin(), wrong.end());
+    return goal;
+  }
+
+  std::vector<Error> errors;
+
+ private:
+  void fail(std::string where, std::string what, std::string mend) {
+    errors.push_back({std::move(where), std::move(what), std::move(mend)});
+  }
+
+  std::vector<std::string> names_of(GoalKind kind) const {
+    const Scene& scene = reading_.scene;
+    if (kind == GoalKind::kMass) return reading::names_of(scene.regions);
+    if (kind == GoalKind::kLevel) return reading::names_of(scene.gauges);
+    if (kind == GoalKind::kForce) return reading::names_of(scene.grips);
+    return reading::names_of(scene.bodies);
+  }
+
+  /// −1, and an error, where there is none of that name.
+  int find(const std::string& name, const std::vector<std::string>& names, const std::string& what,
+           const std::string& where) {
+    const auto found = std::ranges::find(names, name);
+    if (found != names.end()) return static_cast<int>(found - names.begin());
+    std::string list;
+    for (const std::string& known : names) list += (list.empty() ? "" : ", ") + known;
+    const std::string mend = list.empty() ? "Give an object slosh = \"" + what + "\" and that name"
+                                          : did_you_mean(name, names) + "Name one of: " + list;
+    fail(where, "names the " + what + " '" + name + "', and there is none", mend);
+    return -1;
+  }
+
+  void read_parts(const json& parts, const std::string& owner, int depth, Goal& goal) {
+    if (goal.kind == GoalKind::kNot) {
+      goal.parts.push_back(read(parts, owner, depth + 1));
+      return;
+    }
+    if (!parts.is_array() || parts.empty() || parts.size() > kMaxGoalParts) {
+      fail(owner, "is no list of goals", "Give a list of 1 to " + std::to_string(kMaxGoalParts) + " goals");
+      return;
+    }
+    for (std::size_t i = 0; i < parts.size(); ++i)
+      goal.parts.push_back(read(parts[i], owner + "[" + std::to_string(i) + "]", depth + 1));
+  }
+
+  void read_limits(gltf::Extras& fields, const std::string& owner, Goal& goal) {
+    if (fields.has("at_least")) goal.at_least = fields.number("at_least", 0.0, gltf::kAnyNumber);
+    if (fields.has("at_most")) goal.at_most = fields.number("at_most", 0.0, gltf::kAnyNumber);
+    if (!fields.has("at_least") && !fields.has("at_most"))
+      fields.fail("at_least", "is missing, and at_most too",
+                  std::string("Give one of them, or both, in ") + unit_of(goal.kind));
+    else if (goal.at_least > goal.at_most)
+      fields.fail("at_least", "is above at_most", "Make it the smaller of the two");
+    if (goal.kind == GoalKind::kMass && fields.has("fluid"))
+      goal.other = find(fields.text("fluid", ""), reading::names_of(reading_.scene.fluids), "fluid",
+                        owner + ": extras.fluid");
+    if (goal.kind == GoalKind::kDistance)
+      goal.other = find(fields.text("to", ""), names_of(GoalKind::kDistance), "body", owner + ": extras.to");
+  }
+
+  Reading& reading_;
+};
+
+}  // namespace
+
+Problem read_task(Reading& reading) {
+  const json& extras = reading.document.scene_extras;
+  if (!extras.contains("task") || extras["task"].is_null()) return std::nullopt;
+  const std::string owner = reading.document.file + ": scene: extras.task";
+  json steps = extras["task"];
+  // Blender's panel for custom properties has no lists of groups, but texts.
+  if (steps.is_string()) {
+    steps = json::parse(steps.get<std::string>(), nullptr, false);
+    if (steps.is_discarded())
+      return Error{owner, "is a text that is no JSON", "Write it as a list of steps (scenes/TASKS.md)"};
+  }
+  if (!steps.is_array() || steps.empty() || steps.size() > kMaxTaskSteps)
+    return Error{owner, "is no list of steps",
+                 "Give a list of 1 to " + std::to_string(kMaxTaskSteps) + " steps (scenes/TASKS.md)"};
+  Goals goals(reading);
+  Problem first;
+  for (std::size_t i = 0; i < steps.size(); ++i) {
+    const std::string where = owner + "[" + std::to_string(i) + "]";
+    if (!steps[i].is_object()) {
+      goals.errors.push_back({where, "is no step", "Give one as {\"say\": \"…\", \"until\": {…}}"});
+      continue;
+    }
+    gltf::Extras fields(steps[i], where);
+    TaskStep step;
+    step.say = clean_text(fields.text("say", ""), kMaxWords);
+    step.hint = clean_text(fields.text("hint", ""), kMaxWords);
+    step.hold = fields.number("hold_s", 0.0, gltf::Range{0.0, 3600.0});
+    step.within = fields.number("within_s", 0.0, gltf::Range{0.0, 86400.0});
+    step.hint_after = fields.number("hint_after_s", step.hint_after, gltf::Range{0.0, 3600.0});
+    if (step.say.empty())
+      fields.fail("say", "is missing", "Give a sentence that tells the person what to do");
+    const json* until = fields.object("until");
+    if (until)
+      step.until = goals.read(*until, where + ": extras.until");
+    else
+      fields.fail("until", "is missing",
+                  "Give the goal that ends the step, as {\"mass_kg\": \"pan_inside\", \"at_least\": 0.15}");
+    first = all_of(reading, first, fields);
+    reading.scene.task.push_back(std::move(step));
+  }
+  for (Error& error : goals.errors) {
+    if (first)
+      reading.further.push_back(std::move(error));
+    else
+      first = std::move(error);
+  }
+  return first;
+}
+
+}  // namespace slosh::reading

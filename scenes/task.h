@@ -1,0 +1,67 @@
+// A guided task: what a person is asked to do, step by step, and how the world tells that it is done
+// (TASKS.md).
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <string>
+#include <vector>
+
+namespace slosh {
+
+struct Scene;
+
+/// What is measured, or how goals are put together.
+enum class GoalKind : std::uint8_t {
+  kMass,      ///< kg of fluid in a region
+  kLevel,     ///< m along up, at a gauge
+  kTilt,      ///< degrees between a body's up, which is up at the start, and up
+  kSpeed,     ///< m/s of a body's centre of mass
+  kDistance,  ///< m between two bodies' centres of mass
+  kForce,     ///< N on a hand
+  kAll,       ///< every part is met
+  kAny,       ///< some part is
+  kNot,       ///< its one part is not
+};
+
+struct Goal {
+  GoalKind kind = GoalKind::kAll;
+  std::string name;  ///< of the region, gauge, body or grip that is measured
+  int thing = -1;    ///< index of it into the scene's list of these
+  int other = -1;    ///< kDistance: the other body; kMass: index into Scene::fluids, −1 = all
+  double at_least = -std::numeric_limits<double>::infinity();
+  double at_most = std::numeric_limits<double>::infinity();
+  std::vector<Goal> parts;  ///< of kAll, kAny, kNot
+};
+
+struct TaskStep {
+  std::string say;    ///< one sentence for the person
+  std::string hint;   ///< shown where the step takes longer than hint_after; may be empty
+  Goal until;         ///< when it is done
+  double hold = 0.0;  ///< s that the goal has to hold on
+  double within =
+      0.0;  ///< s that it should take; 0 = as long as it takes. Later it is done all the same, and late
+  double hint_after = 10.0;  ///< s
+};
+
+/// Where a task is, as a person reads it; all empty without one.
+struct TaskLines {
+  std::string title;  ///< "step 2 of 5"
+  std::string say;
+  std::string now;   ///< what is measured, against what is wanted
+  std::string hint;  ///< empty before its time
+  bool operator==(const TaskLines&) const = default;
+};
+
+inline constexpr std::size_t kMaxTaskSteps = 100;
+inline constexpr std::size_t kMaxGoalParts = 32;  ///< of one goal
+inline constexpr int kDeepestGoal = 8;            ///< goals within goals
+
+/// "fluid in pan_inside: at least 0.15 kg", for people.
+std::string in_words(const Goal& goal, const Scene& scene);
+/// Of a goal that measures something, what that is: "fluid in pan_inside".
+std::string measured_in_words(const Goal& goal, const Scene& scene);
+/// Of what a kind measures: "kg"; empty for the last three.
+const char* unit_of(GoalKind kind);
+
+}  // namespace slosh
