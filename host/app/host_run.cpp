@@ -80,6 +80,10 @@ void print_summary(const HostedRun& run, const HostReport& report, const ServerF
                 grouped(figures.fluid_models_sent).c_str());
   std::printf("network    %.1f MB sent, %.1f s of processor time\n",
               1e-6 * static_cast<double>(figures.bytes_sent), net_seconds);
+  if (run.task() != nullptr) {
+    const TaskLines task = run.task()->lines();
+    std::printf("task       %s: %s\n", task.title.c_str(), task.say.c_str());
+  }
   if (report.status != 0) std::printf("status     %s\n", status_text(report.status).c_str());
   for (const std::string& body : report.gone) std::printf("gone       %s\n", clean_lines(body, 300).c_str());
   if (run.checkpoint()) {

@@ -57,6 +57,7 @@ Result<std::unique_ptr<HostedRun>> HostedRun::create(HostedWorld& hosted, const 
   }
   s.channel_ = std::make_unique<Channel>(scene.grips.size(), initial_message(*hosted.world, hosted.state.run),
                                          kHostedBytes);
+  if (!scene.task.empty()) s.task_tap_ = std::make_unique<TaskTap>(scene, hosted.prepared.sampled);
   const Result<bool> network = s.open_network(supervision);
   if (!network) return network.error();
   s.make_links();
@@ -72,6 +73,7 @@ Result<std::unique_ptr<HostedRun>> HostedRun::create(HostedWorld& hosted, const 
   if (supervision != nullptr) host.pulse = &supervision->pulse();
   s.host_ = std::make_unique<Host>(std::move(*hosted.world), scene, *s.channel_, host);
   s.host_->add_tap(*s.server_);
+  if (s.task_tap_) s.host_->add_tap(*s.task_tap_);
   if (const Result<bool> files = s.open_files(); !files) return files.error();
   return run;
 }
@@ -89,6 +91,7 @@ Result<bool> HostedRun::open_network(SupervisorControl* supervision) {
   world.command = [this](const HostCommand& command, HostAnswer answer) {
     host_->post(command, std::move(answer));
   };
+  if (task_tap_) world.task = [this] { return task_tap_->lines(); };
   world.state = hosted_.state;
   world.particles = hosted_.particles;
   world.spacing = p.sampled.spacing;

@@ -15,6 +15,7 @@
 #include "host/server/console_door.h"
 #include "host/server/net_loop.h"
 #include "host/server/snapshot_coder.h"
+#include "host/task_tap.h"
 #include "peer/app/world_files.h"
 
 namespace slosh {
@@ -41,6 +42,7 @@ class HostedRun {
   void stop(const std::string& why);
 
   Host& host() { return *host_; }
+  const TaskTap* task() const { return task_tap_.get(); }  ///< null where the scene has none
   NetLoop& net() { return *net_; }
   ConsoleDoor& door() { return *door_; }
   const std::string& address() const { return address_; }
@@ -90,6 +92,7 @@ class HostedRun {
   std::unique_ptr<Endpoint> endpoint_;
   std::unique_ptr<keep::CheckpointWriter> checkpoint_;
   std::unique_ptr<WorldFiles> files_;
+  std::unique_ptr<TaskTap> task_tap_;  // null where the scene has no task
   std::unique_ptr<Host> host_;
   std::unique_ptr<SnapshotThread> snapshots_;
   std::unique_ptr<NetLoop> net_;

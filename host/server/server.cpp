@@ -13,6 +13,7 @@ namespace slosh {
 namespace {
 
 constexpr std::int64_t kRosterEvery = 50'000'000;  // ns between two rosters: comings may come in crowds
+constexpr std::int64_t kTaskEvery = 250'000'000;   // ns
 constexpr std::int64_t kCheckEvery = 50'000'000;   // ns between two looks at who is late
 constexpr std::int64_t kLongestNap = 50'000'000;   // ns
 constexpr std::int64_t kStrangerLineEvery = 10'000'000'000;  // ns between two lines about strangers
@@ -225,8 +226,17 @@ void Server::turn() {
     roster_sent_ns_ = now();
     send_roster();
   }
+  if (world_.task && now() - task_asked_ns_ >= kTaskEvery) send_task();
   if (state_dirty_) save_state();
   peers_.sweep();
+}
+
+void Server::send_task() {
+  task_asked_ns_ = now();
+  const TaskLines lines = world_.task();
+  if (lines == task_told_) return;
+  task_told_ = lines;
+  send_all(wire::Task{lines.title, lines.say, lines.now, lines.hint}, false, nullptr, wire::kTasks);
 }
 
 void Server::send_roster() {

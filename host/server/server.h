@@ -58,6 +58,7 @@ struct ServedWorld {
   SnapshotDesk* desk = nullptr;
   FluidDemand* fluid_demand = nullptr;  ///< the server says whose wrenches are wanted; null = nobody's
   std::function<void(const HostCommand&, HostAnswer)> command;  ///< Host::post; answers on any thread
+  std::function<TaskLines()> task;  ///< where the scene has one, else empty; asked on the server's thread
   HostState state;
   std::uint64_t particles = 0;
   double spacing = 0.0;    ///< m
@@ -145,7 +146,8 @@ class Server final : public EndpointEvents, public HostTap {
   template <class M>
   void send(Peer& peer, const M& message);
   template <class M>
-  void send_all(const M& message, bool participants_only = false, const Peer* but = nullptr);
+  void send_all(const M& message, bool participants_only = false, const Peer* but = nullptr,
+                wire::Capabilities behind = 0);
   void notice_all(const std::string& text, bool participants_only = false, const Peer* but = nullptr);
   void refuse(Peer& peer, wire::RefusalCode code, const std::string& text);
   void say_of_stranger(const std::string& line);
@@ -160,6 +162,7 @@ class Server final : public EndpointEvents, public HostTap {
   void lose_all(const Seat& seat);
   void hide_hands(const Seat& seat);
   void send_roster();
+  void send_task();
   void roster_changed() { roster_dirty_ = state_dirty_ = true; }
 
   // server_control.cpp
@@ -237,6 +240,8 @@ class Server final : public EndpointEvents, public HostTap {
   wire::RosterTold roster_told_;
   bool roster_dirty_ = false;
   std::int64_t roster_sent_ns_ = 0;
+  TaskLines task_told_;
+  std::int64_t task_asked_ns_ = 0;
   std::int64_t checked_ns_ = 0;
   bool quit_asked_ = false;
   bool ending_ = false;

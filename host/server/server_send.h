@@ -27,11 +27,11 @@ void Server::send(Peer& peer, const M& message) {
 }
 
 template <class M>
-void Server::send_all(const M& message, bool participants_only, const Peer* but) {
+void Server::send_all(const M& message, bool participants_only, const Peer* but, wire::Capabilities behind) {
   std::map<wire::Capabilities, wire::Bytes> coded;  // once for all that have agreed to the same
   std::vector<Peer*> deaf;
   peers_.each_in([&](Peer& peer) {
-    if (&peer == but || (participants_only && !peer.participant)) return;
+    if (&peer == but || (participants_only && !peer.participant) || (peer.agreed & behind) != behind) return;
     auto [bytes, fresh] = coded.try_emplace(peer.agreed);
     if (fresh) bytes->second = wire::control(message, nullptr, peer.agreed);
     if (!send_bytes(*endpoint_, peer, bytes->second)) deaf.push_back(&peer);

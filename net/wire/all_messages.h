@@ -16,7 +16,7 @@ struct MessageList {};
 
 using PeerControl = MessageList<Hello, GripRequest, WorldRequest, ParameterRequest, Bye>;
 using HostControl =
-    MessageList<Welcome, Refused, Roster, RosterChange, Answer, WorldInfo, Rights, Notice, Bye>;
+    MessageList<Welcome, Refused, Roster, RosterChange, Answer, WorldInfo, Rights, Task, Notice, Bye>;
 using PeerDatagrams = MessageList<Poses, ClockPing, SnapshotFeedback>;
 /// Without kSnapshotPiece, which net/codec reads.
 using HostDatagrams = MessageList<ClockPong, Bodies, Hands, FluidWrench>;

@@ -39,9 +39,12 @@ constexpr Capabilities kLinkRights = 1u << 6;
 /// GripEntry has whether a stand holds the grip, and the stiffness that acts.
 constexpr Capabilities kHolds = 1u << 7;
 
+/// Task follows WorldInfo where the scene has a guided task.
+constexpr Capabilities kTasks = 1u << 8;
+
 /// What this program understands; a peer's Hello asks for all of it.
 constexpr Capabilities kOurCapabilities = kRosterChanges | kFluidWrenches | kCouplings | kGripStiffnesses |
-                                          kFeltHands | kNoTickAcks | kLinkRights | kHolds;
+                                          kFeltHands | kNoTickAcks | kLinkRights | kHolds | kTasks;
 /// For what has no other side: pages, tests of single messages, files.
 constexpr Capabilities kAllCapabilities = ~Capabilities{0};
 

@@ -29,6 +29,7 @@ enum class ControlType : std::uint8_t {
   kNotice = 21,
   kRosterChange = 22,
   kRights = 23,
+  kTask = 24,
 };
 
 enum class Role : std::uint8_t { kParticipant, kSpectator };
@@ -285,6 +286,23 @@ void visit(V& v, Rights& m) {
   v.flag("run", m.run);
   v.flag("parameters", m.parameters);
   v.flag("stiffness", m.stiffness);
+}
+
+/// Where the scene's guided task is, in words: after the first WorldInfo, and when it is another, a few times
+/// a second. Behind kTasks.
+struct Task {
+  static constexpr ControlType kType = ControlType::kTask;
+  std::string title;
+  std::string say;
+  std::string now;
+  std::string hint;
+};
+template <class V>
+void visit(V& v, Task& m) {
+  v.text("title", m.title, kMaxText);
+  v.text("say", m.say, kMaxText);
+  v.text("now", m.now, kMaxText);
+  v.text("hint", m.hint, kMaxText);
 }
 
 /// Something to tell a person: who came, who went, what was refused.

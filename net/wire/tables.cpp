@@ -44,6 +44,7 @@ std::vector<Table> tables() {
           message<Answer>("Answer"),
           message<WorldInfo>("WorldInfo"),
           message<Rights>("Rights"),
+          message<Task>("Task"),
           message<Notice>("Notice"),
           message<Poses>("Poses"),
           message<ClockPing>("ClockPing"),

@@ -87,6 +87,7 @@ Rates RemoteRun::world_rates() {
   rates.real_time = status_.state == LinkState::kLive ? status_.moment.rate : 0.0;
   rates.connection = connection_text(status_, visit_.world().maker->delay(), steady_now_ns());
   rates.people = people_text(status_, grip_names_);
+  rates.task = status_.task;
   return rates;
 }
 

@@ -72,6 +72,8 @@ wire::Fault RemoteLink::receive(std::uint64_t type, wire::ByteView payload) {
       return on_world_info(payload);
     case wire::ControlType::kRights:
       return on_rights(payload);
+    case wire::ControlType::kTask:
+      return on_task(payload);
     case wire::ControlType::kNotice:
       return on_notice(payload);
     case wire::ControlType::kBye: {
@@ -186,6 +188,14 @@ wire::Fault RemoteLink::on_rights(wire::ByteView payload) {
   wire::Rights rights;
   if (wire::Fault fault = wire::decode(payload, rights)) return fault;
   status_.rights = rights;
+  publish(now());
+  return {};
+}
+
+wire::Fault RemoteLink::on_task(wire::ByteView payload) {
+  wire::Task task;
+  if (wire::Fault fault = wire::decode(payload, task)) return fault;
+  status_.task = {task.title, task.say, task.now, task.hint};
   publish(now());
   return {};
 }

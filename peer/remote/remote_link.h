@@ -124,6 +124,7 @@ class RemoteLink final : public EndpointEvents {
   wire::Fault on_answer(wire::ByteView payload);
   wire::Fault on_world_info(wire::ByteView payload);
   wire::Fault on_rights(wire::ByteView payload);
+  wire::Fault on_task(wire::ByteView payload);
   wire::Fault on_notice(wire::ByteView payload);
   void take_scene(std::span<const std::uint8_t> bytes, bool end);
   void build_world();

@@ -11,6 +11,7 @@
 
 #include "net/wire/messages.h"
 #include "peer/remote/body_inbox.h"
+#include "scenes/task.h"
 #include "sim/math/result.h"
 
 namespace slosh {
@@ -45,6 +46,7 @@ struct RemoteStatus {
   std::vector<bool> held;                ///< our grips, one a grip of the scene
   wire::WorldInfo world;
   wire::Rights rights;  ///< what we may ask of it; of a host that does not say: all, where we may take hold
+  TaskLines task;       ///< of the host's scene; empty where it has none, or does not say
   WorldMoment moment;   ///< where the host's world stands
   double world_time = 0.0;  ///< simulated s of the host's world now
   LinkNumbers numbers;

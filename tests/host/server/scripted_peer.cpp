@@ -110,6 +110,7 @@ void ScriptedPeer::on_stream(ConnectionId, std::int64_t stream, std::span<const 
       if constexpr (std::is_same_v<M, wire::Answer>) keep(answers, message);
       if constexpr (std::is_same_v<M, wire::WorldInfo>) keep(worlds, message);
       if constexpr (std::is_same_v<M, wire::Rights>) keep(rights, message);
+      if constexpr (std::is_same_v<M, wire::Task>) keep(tasks, message);
       if constexpr (std::is_same_v<M, wire::Notice>) keep(notices, message.text);
     };
     return wire::dispatch(wire::HostControl{}, type, payload, take, capabilities & wire::kOurCapabilities);
@@ -149,6 +150,7 @@ ServedTest::ServedTest(const ServerOptions& given)
   world.fluid_demand = &fluid_demand;
   world.spacing = 0.01;
   world.time_step = 0.002;
+  world.task = [this] { return task; };
   world.state.viscosities = {0.001};
   world.state.paused = options.hands_to_start > 0;
   world.command = [this](const HostCommand& command, const HostAnswer& answer) {

@@ -64,6 +64,7 @@ class ScriptedPeer final : public EndpointEvents {
   std::vector<wire::Answer> answers;
   std::vector<wire::WorldInfo> worlds;
   std::vector<wire::Rights> rights;
+  std::vector<wire::Task> tasks;
   std::vector<std::string> notices;
   std::vector<wire::ClockPong> pongs;
   std::vector<wire::Bodies> bodies;
@@ -123,6 +124,7 @@ class ServedTest : public ::testing::Test {
   wire::Token watch{};
   wire::Token rule{};  ///< to hold, and to run the world
   std::string hold_id;
+  TaskLines task;               ///< where the world's task is
   std::string refuse_commands;  ///< the world's answer to all that is asked, empty = granted
 };
 

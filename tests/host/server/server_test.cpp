@@ -345,5 +345,34 @@ TEST_F(ServerTest, TheConsoleRulesTheRun) {
   EXPECT_TRUE(server->quit_asked());
 }
 
+TEST_F(ServerTest, EverybodySeesWhereTheTaskIs) {
+  ScriptedPeer& ana = join(1, "Ana");
+  ScriptedPeer& old = *peers.emplace_back(std::make_unique<ScriptedPeer>(network, 2));
+  old.capabilities &= ~wire::kTasks;
+  old.hello(hold, "Old");
+  go(1.0);
+  EXPECT_TRUE(ana.tasks.empty()) << "the scene has none";
+  task = {"step 1 of 2", "Pour.", "0 kg", ""};
+  go(0.5);
+  ASSERT_EQ(ana.tasks.size(), 1u);
+  EXPECT_EQ(ana.tasks[0].title, "step 1 of 2");
+  EXPECT_EQ(ana.tasks[0].say, "Pour.");
+  EXPECT_EQ(ana.tasks[0].now, "0 kg");
+  go(2.0);
+  EXPECT_EQ(ana.tasks.size(), 1u) << "nothing new";
+  int step = 0;
+  go(2.0, 0.005, [&] { task.now = std::to_string(++step) + " kg"; });
+  EXPECT_GE(ana.tasks.size(), 7u);
+  EXPECT_LE(ana.tasks.size(), 10u) << "four a second";
+  task = {"step 2 of 2", "Stop.", "", "Now."};
+  go(0.5);
+  // Who comes later, or back, finds it where it is.
+  const ScriptedPeer& eve = join(3, watch, "Eve");
+  ASSERT_EQ(eve.tasks.size(), 1u);
+  EXPECT_EQ(eve.tasks[0].say, "Stop.");
+  EXPECT_EQ(eve.tasks[0].hint, "Now.");
+  EXPECT_TRUE(old.tasks.empty()) << "an earlier peer is not told what it does not know";
+}
+
 }  // namespace
 }  // namespace slosh

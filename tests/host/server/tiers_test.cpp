@@ -40,8 +40,7 @@ TEST(Tiers, AClearLinkClimbsToItsBestAndStays) {
   std::int64_t now = 1;
   EXPECT_EQ(run(control, 20.0, now, [](int) { return clear(); }), kAllParticles);
   int changes = 0;
-  run(
-      control, 60.0, now, [](int) { return clear(); }, &changes);
+  run(control, 60.0, now, [](int) { return clear(); }, &changes);
   EXPECT_EQ(changes, 0);
 }
 
@@ -56,8 +55,7 @@ TEST(Tiers, PlainLossIsNoReasonToGoDown) {
   std::int64_t now = 1;
   EXPECT_EQ(run(control, 30.0, now, [](int) { return clear(0.05); }), kAllParticles);
   int downs = 0;
-  run(
-      control, 30.0, now, [](int) { return clear(0.05); }, &downs);
+  run(control, 30.0, now, [](int) { return clear(0.05); }, &downs);
   EXPECT_EQ(downs, 0);
 }
 
