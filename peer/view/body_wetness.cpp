@@ -13,8 +13,11 @@ constexpr float kTouches = 0.9f;  // from a face
 constexpr float kWhole = 0.5f;    // from a particle's centre: wet
 constexpr float kNot = 1.5f;      // not wet by it
 
-constexpr std::size_t kMaxCells = std::size_t{1} << 19;  // of a body: larger ones have larger cells
-constexpr std::size_t kMaxLooked = 32768;                // particles of a snapshot
+// A scene may be a stranger's. Larger bodies have larger cells, and so have those of a scene with very many.
+constexpr std::size_t kMaxCells = std::size_t{1} << 19;     // of a body
+constexpr std::size_t kMaxAllCells = std::size_t{1} << 22;  // of all
+constexpr double kMaxMarked = 1e8;          // cells looked at, triangle by triangle, of a body
+constexpr std::size_t kMaxLooked = 131072;  // particles times bodies of a snapshot
 
 // A share of 64 is dry (frame.h).
 constexpr int kDrySteps = 24;
@@ -23,6 +26,8 @@ constexpr int kDryStep = (255 - 64) / kDrySteps + 1;
 }  // namespace
 
 BodyWetness::BodyWetness(const Scene& scene, double spacing) : spacing_(static_cast<float>(spacing)) {
+  const double most_cells = static_cast<double>(
+      std::clamp(kMaxAllCells / std::max(scene.bodies.size(), std::size_t{1}), std::size_t{1}, kMaxCells));
   for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
     const Body& body = scene.bodies[i];
     if (body.mesh < 0 || body.point_probe || body.material.opacity < 1.0f) continue;
@@ -41,7 +46,7 @@ BodyWetness::BodyWetness(const Scene& scene, double spacing) : spacing_(static_c
       const glm::dvec3 size = glm::ceil(glm::dvec3(high - low) / double(grid.cell));
       return size.x * size.y * size.z;
     };
-    while (cells() > double(kMaxCells)) grid.cell *= 1.1f;
+    while (cells() > most_cells) grid.cell *= 1.1f;
     grid.size = glm::max(glm::ivec3(glm::ceil((high - low) / grid.cell)), glm::ivec3(1));
     mark_faces(mesh, grid);
     grids_.push_back(std::move(grid));
@@ -52,7 +57,9 @@ void BodyWetness::mark_faces(const TriangleMesh& mesh, Grid& grid) const {
   const auto cells = std::size_t(grid.size.x) * std::size_t(grid.size.y) * std::size_t(grid.size.z);
   grid.near_face.assign(cells, 0);
   grid.shares.assign(cells, 0);
-  const float touches = kTouches * spacing_;
+  // A face must not pass between the middles of large cells.
+  const float touches = std::max(kTouches * spacing_, 0.87f * grid.cell);
+  double looked_at = 0.0;
   for (const glm::uvec3& corners : mesh.triangles) {
     const glm::vec3& a = mesh.positions[corners.x];
     const glm::vec3& b = mesh.positions[corners.y];
@@ -65,6 +72,12 @@ void BodyWetness::mark_faces(const TriangleMesh& mesh, Grid& grid) const {
     const glm::vec3 high = (glm::max(a, glm::max(b, c)) + touches - grid.low) / grid.cell;
     const glm::ivec3 first = glm::clamp(glm::ivec3(glm::floor(low)), glm::ivec3(0), grid.size - 1);
     const glm::ivec3 last = glm::clamp(glm::ivec3(glm::floor(high)), glm::ivec3(0), grid.size - 1);
+    const glm::dvec3 box(last - first + 1);
+    looked_at += box.x * box.y * box.z;
+    if (looked_at > kMaxMarked) {  // many triangles as large as the body: then all of it counts as near one
+      std::ranges::fill(grid.near_face, std::uint8_t{1});
+      return;
+    }
     for (int z = first.z; z <= last.z; ++z)
       for (int y = first.y; y <= last.y; ++y)
         for (int x = first.x; x <= last.x; ++x) {
@@ -146,7 +159,7 @@ void BodyWetness::record(const Snapshot& snapshot) {
     for (Grid& grid : grids_) dry(grid, by);
   }
   const std::size_t count = std::min(snapshot.positions.size(), snapshot.fluid_index.size());
-  const std::size_t turns = count / kMaxLooked + 1;
+  const std::size_t turns = count * grids_.size() / kMaxLooked + 1;
   turn_ = (turn_ + 1) % turns;
   for (Grid& grid : grids_) {
     if (grid.body >= snapshot.rigid.bodies.size() || snapshot.rigid.bodies[grid.body].gone) continue;

@@ -20,7 +20,8 @@ class BodyWetness {
   BodyWetness(const Scene& scene, double spacing);
 
   /// Wets what particles are at, and dries the rest by the time since the snapshot before. All is dry where
-  /// time goes back. Of many particles some are looked at, the others at the next one.
+  /// time goes back. Of many particles, or bodies, some particles are looked at, the others at the next
+  /// ones.
   void record(const Snapshot& snapshot);
   /// Of a body of the scene, nothing of one that is dry; points into this until the next record().
   Wetness of(std::size_t body) const;

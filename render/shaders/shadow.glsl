@@ -50,11 +50,10 @@ float light_past_meshes(vec3 world, vec3 normal) {
   float wide = 2.0 * kLightWide * max(at.z - nearest, 0.0) * look_switches.y / key_light.w;
   wide = soft ? clamp(wide, 1.0, look_switches.z) : kSharpWide;
   vec2 slope = soft ? slope_in_shadow_map(normal) : vec2(0.0);
-  bool lit = outside || ends.x >= at.z;
   bool dark = ends.y < at.z - own;
   // llvmpipe goes through both sides of an if, but leaves a loop: so one loop has all taps. Soft ones lie on a spiral by the golden angle,
   // each for as much area; sharp ones on a circle, turned so that their footprints do not line up with the texels.
-  int taps = lit || dark ? 0 : soft ? clamp(int(kTapsATexel * wide), 4, kSoftTaps) : kSharpTaps;
+  int taps = dark ? 0 : soft ? clamp(int(kTapsATexel * wide), 4, kSoftTaps) : kSharpTaps;
   vec2 turn = soft ? vec2(-0.73736888, 0.67549029) : kSharpTurn;
   vec2 way = kSharpWay;
   float reaching = 0.0;

@@ -71,8 +71,7 @@ class Goals {
     if (kinds != 1) {
       fail(owner, kinds == 0 ? "says nothing that can be measured" : "says more than one thing to measure",
            "Give one of mass_kg, level_m, tilt_deg, speed_m_s, distance_m, force_n, all, any, not; several "
-           "goals go "
-           "together by all or any");
+           "goals go together by all or any");
       return goal;
     }
     if (goal.kind < GoalKind::kAll) read_limits(fields, owner, goal);

@@ -125,6 +125,30 @@ TEST(BodyWetness, OfVeryManyParticlesEachHasItsTurn) {
     EXPECT_GE(share_at(wetness.of(0), {0.04f * static_cast<float>(i) - 0.16f, 0.0f, 0.0f}, kUp), kIsWet) << i;
 }
 
+TEST(BodyWetness, OfVeryManyBodiesNoneHasManyCells) {
+  Scene scene = boards(1000);
+  for (TriangleMesh& mesh : scene.meshes)
+    for (glm::vec3& at : mesh.positions) at *= 20.0f;
+  BodyWetness wetness(scene, kFine);
+  for (int picture = 0; picture < 3; ++picture)
+    wetness.record(seen_at(0.02 * picture, {{0.0f, 0.005f, 0.0f}}, 1000));
+  std::size_t cells = 0;
+  for (std::size_t i = 0; i < 1000; ++i) {
+    EXPECT_GE(share_at(wetness.of(i), glm::vec3(0.0f), kUp), kIsWet) << i;
+    cells += wetness.of(i).shares.size();
+  }
+  EXPECT_LE(cells, std::size_t{1} << 22);
+}
+
+TEST(BodyWetness, VeryManyLargeTrianglesTakeNoLonger) {
+  Scene scene = boards(1);
+  TriangleMesh& mesh = scene.meshes[0];
+  for (int i = 0; i < 100000; ++i) mesh.triangles.push_back(mesh.triangles[static_cast<std::size_t>(i) % 12]);
+  BodyWetness wetness(scene, kFine);
+  wetness.record(seen_at(0.0, {{0.0f, 0.005f, 0.0f}}));
+  EXPECT_GE(share_at(wetness.of(0), glm::vec3(0.0f), kUp), kIsWet);
+}
+
 TEST(BodyWetness, ALargeBodyHasLargerCellsAndNoMore) {
   Scene scene = boards(1);
   for (glm::vec3& at : scene.meshes[0].positions) at *= 20.0f;

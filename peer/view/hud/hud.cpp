@@ -15,7 +15,7 @@ namespace {
 constexpr double kChartSeconds = 5.0;
 constexpr double kStatusSeconds = 1.5;  // simulated: a status of one step is shown long enough to be read
 constexpr float kTaskLetters = 52.0f;   // of a line of the task's panel, at most
-constexpr float kMostTask = 0.3f;       // of the picture's height
+constexpr float kMaxTask = 0.3f;        // of the picture's height
 constexpr float kMinForce = 1.0f;       // N, that a chart's height is at least
 constexpr float kMinTorque = 0.05f;     // N·m
 
@@ -251,7 +251,7 @@ void Hud::draw_task(const TaskLines& task, const glm::vec2& picture) {
   const float letter = layout_->letters * ImGui::CalcTextSize("0").x;
   const float width = std::min(room, kTaskLetters * letter + 2.0f * padding.x);
   const float inner = width - 2.0f * padding.x;
-  const float most = kMostTask * picture.y - 2.0f * padding.y;
+  const float most = kMaxTask * picture.y - 2.0f * padding.y;
   if (!task.hint.empty() && rows_height(rows, inner, layout_->letters) > most) rows.pop_back();
   cut_rows(rows, inner, most, layout_->letters);
   const float height = rows_height(rows, inner, layout_->letters) + 2.0f * padding.y;
