@@ -93,6 +93,21 @@ double size_of(const glm::dmat3& m) {
   return std::sqrt(glm::dot(m[0], m[0]) + glm::dot(m[1], m[1]) + glm::dot(m[2], m[2]));
 }
 
+TEST(FluidStress, OfANeighbourOfWhichRoundingLeavesNothingIsNone) {
+  StressSums sums{};
+  sums.apart = {1e-9f, 0.0f, 0.0f};
+  InverseMoment<float> moment{};
+  moment.inverse = {1.0f, 0.0f, 0.0f, 1.0f, 0.0f, 1.0f};
+  moment.kept = 1e-20f;
+  for (const float number : {0.0f, -1e-13f}) {
+    sums.number = number;
+    const FluidStress found = fluid_stress(sums, moment, 1.0f, rest_moment(), kVolume, kViscosity);
+    EXPECT_EQ(found.rest.x, 0.0f) << number;
+    EXPECT_EQ(found.rest.y, 0.0f);
+    EXPECT_TRUE(std::isfinite(found.push.x.x));
+  }
+}
+
 // What a particle pushes with is V τ M⁻¹, τ Newton's, at a surface as inside; nothing is left to be braked.
 TEST(FluidStress, IsNewtonsInALinearFlow) {
   std::mt19937 random(7);

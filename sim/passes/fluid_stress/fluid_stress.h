@@ -70,7 +70,8 @@ SLOSH_HD inline FluidStress fluid_stress(const StressSums& sums, const InverseMo
   const float scale = -share * volume * viscosity;
   found.push = times(kept(stress), scaled_and_shifted(turned, scale, 0.0f));
   const Vector3<float> flow = times(g, sums.flow.offset.x, sums.flow.offset.y, sums.flow.offset.z);
-  const float brake = kResidualDamping * share * viscosity / sums.number;
+  // Of one far neighbour rounding may leave no number at all, and a moment that is not quite flat.
+  const float brake = sums.number > 0.0f ? kResidualDamping * share * viscosity / sums.number : 0.0f;
   found.rest = {brake * (sums.apart.x - flow.x), brake * (sums.apart.y - flow.y),
                 brake * (sums.apart.z - flow.z)};
   return found;
