@@ -112,6 +112,15 @@ TEST_P(HudSizes, ATaskHasItsPlaceBesideThem) {
     EXPECT_EQ(area(hud.task_panel()), 0.0f);
     said.task = {"step 2 of 12, 8 s left", "Pour until the pan holds 0.4 kg.",
                  "fluid in pan_inside 0.021 kg, wanted at least 0.4", ""};
+    const std::string long_words(400, 'w');  // of a host that means no good
+    for (const TaskLines& lines :
+         {TaskLines{long_words, "x", "", ""}, TaskLines{"step", long_words, long_words, long_words}}) {
+      Rates rude = rates();
+      rude.task = lines;
+      frame([&] { hud.draw(rude); });
+      EXPECT_LE(area(hud.task_panel()), 0.34f * picture().x * picture().y);
+      EXPECT_LE(outside(), 0.5f);
+    }
     for (const char* words :
          {"Slowly.",
           "Tilt the bowl further: batter is thick, and takes its time until it runs over the lip and into "

@@ -243,7 +243,7 @@ void Hud::draw_hands(const glm::vec2& picture) {
 void Hud::draw_task(const TaskLines& task, const glm::vec2& picture) {
   using Kind = PanelRow::Kind;
   std::vector<PanelRow> rows = {
-      {Kind::kTitle, task.title, {}}, {Kind::kLine, {}, {}}, {Kind::kText, task.say, {}}};
+      {Kind::kText, task.title, {}}, {Kind::kLine, {}, {}}, {Kind::kText, task.say, {}}};
   if (!task.now.empty()) rows.push_back({Kind::kText, task.now, {}});
   if (!task.hint.empty()) rows.push_back({Kind::kWarning, task.hint, {}});
   const ImVec2 padding = ImGui::GetStyle().WindowPadding;
