@@ -16,8 +16,8 @@ constexpr float kNot = 1.5f;      // not wet by it
 // A scene may be a stranger's. Larger bodies have larger cells, and so have those of a scene with very many.
 constexpr std::size_t kMaxCells = std::size_t{1} << 19;     // of a body
 constexpr std::size_t kMaxAllCells = std::size_t{1} << 22;  // of all
-constexpr double kMaxMarked = 1e8;          // cells looked at, triangle by triangle, of a body
-constexpr std::size_t kMaxLooked = 131072;  // particles times bodies of a snapshot
+constexpr double kMaxMarked = 1e8;                          // cells looked at, triangle by triangle, of all
+constexpr std::size_t kMaxLooked = 131072;                  // particles times bodies of a snapshot
 
 // A share of 64 is dry (frame.h).
 constexpr int kDrySteps = 24;
@@ -28,6 +28,7 @@ constexpr int kDryStep = (255 - 64) / kDrySteps + 1;
 BodyWetness::BodyWetness(const Scene& scene, double spacing) : spacing_(static_cast<float>(spacing)) {
   const double most_cells = static_cast<double>(
       std::clamp(kMaxAllCells / std::max(scene.bodies.size(), std::size_t{1}), std::size_t{1}, kMaxCells));
+  double looked_at = 0.0;
   for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
     const Body& body = scene.bodies[i];
     if (body.mesh < 0 || body.point_probe || body.material.opacity < 1.0f) continue;
@@ -48,18 +49,18 @@ BodyWetness::BodyWetness(const Scene& scene, double spacing) : spacing_(static_c
     };
     while (cells() > most_cells) grid.cell *= 1.1f;
     grid.size = glm::max(glm::ivec3(glm::ceil((high - low) / grid.cell)), glm::ivec3(1));
-    mark_faces(mesh, grid);
+    mark_faces(mesh, grid, looked_at);
     grids_.push_back(std::move(grid));
   }
 }
 
-void BodyWetness::mark_faces(const TriangleMesh& mesh, Grid& grid) const {
+/// `looked_at`: cells, of all bodies so far.
+void BodyWetness::mark_faces(const TriangleMesh& mesh, Grid& grid, double& looked_at) const {
   const auto cells = std::size_t(grid.size.x) * std::size_t(grid.size.y) * std::size_t(grid.size.z);
   grid.near_face.assign(cells, 0);
   grid.shares.assign(cells, 0);
   // A face must not pass between the middles of large cells.
   const float touches = std::max(kTouches * spacing_, 0.87f * grid.cell);
-  double looked_at = 0.0;
   for (const glm::uvec3& corners : mesh.triangles) {
     const glm::vec3& a = mesh.positions[corners.x];
     const glm::vec3& b = mesh.positions[corners.y];
@@ -74,7 +75,7 @@ void BodyWetness::mark_faces(const TriangleMesh& mesh, Grid& grid) const {
     const glm::ivec3 last = glm::clamp(glm::ivec3(glm::floor(high)), glm::ivec3(0), grid.size - 1);
     const glm::dvec3 box(last - first + 1);
     looked_at += box.x * box.y * box.z;
-    if (looked_at > kMaxMarked) {  // many triangles as large as the body: then all of it counts as near one
+    if (looked_at > kMaxMarked) {  // very many large triangles: then all of the body counts as near one
       std::ranges::fill(grid.near_face, std::uint8_t{1});
       return;
     }

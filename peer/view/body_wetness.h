@@ -41,7 +41,7 @@ class BodyWetness {
              std::size_t(size.x) * (std::size_t(c.y) + std::size_t(size.y) * std::size_t(c.z));
     }
   };
-  void mark_faces(const TriangleMesh& mesh, Grid& grid) const;
+  void mark_faces(const TriangleMesh& mesh, Grid& grid, double& looked_at) const;
   bool wet(const glm::vec3& at, Grid& grid) const;
   void dry(Grid& grid, int by);
   void forget();
