@@ -2,17 +2,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 #include "scenes/scene.h"
+#include "sim/math/format.h"
 
 namespace slosh {
 namespace {
 
 std::string number(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.4g", value);
-  return text;
+  return format("%.4g", value);
 }
 
 std::string limits(const Goal& goal) {

@@ -236,7 +236,7 @@ void Server::send_task() {
   const TaskLines lines = world_.task();
   if (lines == task_told_) return;
   task_told_ = lines;
-  send_all(wire::Task{lines.title, lines.say, lines.now, lines.hint}, false, nullptr, wire::kTasks);
+  send_all(task_message(lines), false, nullptr, wire::kTasks);
 }
 
 void Server::send_roster() {

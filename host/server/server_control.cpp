@@ -122,8 +122,7 @@ void Server::welcome(Peer& peer, Seat& seat, bool restored) {
   send(peer, roster);
   send(peer, switches_.message());
   send_rights(peer, seat);
-  if (!task_told_.title.empty() && (peer.agreed & wire::kTasks))
-    send(peer, wire::Task{task_told_.title, task_told_.say, task_told_.now, task_told_.hint});
+  if (!task_told_.title.empty() && (peer.agreed & wire::kTasks)) send(peer, task_message(task_told_));
   if (switches_.waits_for_hands() && !peer.gone) send(peer, wire::Notice{switches_.waiting_text()});
   send_scene(peer);
   if (peer.gone) return;

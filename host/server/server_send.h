@@ -26,6 +26,10 @@ void Server::send(Peer& peer, const M& message) {
   endpoint_->close(peer.id, close_code(wire::RefusalCode::kTooMuch), "you read too slowly");
 }
 
+inline wire::Task task_message(const TaskLines& lines) {
+  return {lines.title, lines.say, lines.now, lines.hint};
+}
+
 template <class M>
 void Server::send_all(const M& message, bool participants_only, const Peer* but, wire::Capabilities behind) {
   std::map<wire::Capabilities, wire::Bytes> coded;  // once for all that have agreed to the same

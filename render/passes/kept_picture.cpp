@@ -81,30 +81,31 @@ class Projector {
   float texel_;
 };
 
-/// In the world. Empty for a mesh that is not known or not finite: it is not drawn.
-Bounds box_of(const MeshInstance& instance, const MeshStore& meshes) {
+/// A box of a mesh's frame in the world; empty where that is not finite: it is not drawn.
+Bounds in_world(const Bounds& own, const glm::mat4& model) {
   Bounds box;
-  if (!meshes.has(instance.mesh)) return box;
   for (int corner = 0; corner < 8; ++corner) {
-    const glm::vec3 at(instance.model * glm::vec4(box_corner(meshes.bounds(instance.mesh), corner), 1.0f));
+    const glm::vec3 at(model * glm::vec4(box_corner(own, corner), 1.0f));
     if (!std::isfinite(at.x + at.y + at.z)) return {};
     box.add(at);
   }
   return box;
 }
 
+/// Empty for a mesh that is not known.
+Bounds box_of(const MeshInstance& instance, const MeshStore& meshes) {
+  return meshes.has(instance.mesh) ? in_world(meshes.bounds(instance.mesh), instance.model) : Bounds{};
+}
+
 /// The same of what is wet of it.
 Bounds wet_box_of(const MeshInstance& instance) {
   const Wetness& wet = instance.wet;
-  Bounds box;
-  if (wet.version == 0) return box;
+  if (wet.version == 0) return {};
   // Half a cell beyond the outermost there is still some of it, and it is told before the face.
   const float pad = wet.cell + wet.off;
-  const Bounds own{wet.low + wet.cell * glm::vec3(wet.wet_low) - pad,
-                   wet.low + wet.cell * glm::vec3(wet.wet_high) + pad};
-  for (int corner = 0; corner < 8; ++corner)
-    box.add(glm::vec3(instance.model * glm::vec4(box_corner(own, corner), 1.0f)));
-  return box;
+  return in_world(
+      {wet.low + wet.cell * glm::vec3(wet.wet_low) - pad, wet.low + wet.cell * glm::vec3(wet.wet_high) + pad},
+      instance.model);
 }
 
 PixelBox moving_parts(const Frame& frame, const Projector& seen) {

@@ -32,13 +32,11 @@ void WetMaps::upload(const Wetness& wet, Map& map) {
     const std::uint8_t dry = 0;
     glClearTexImage(name, 0, GL_RED, GL_UNSIGNED_BYTE, &dry);
   }
+  const glm::ivec3 wet_low = glm::clamp(wet.wet_low, glm::ivec3(0), wet.size);
+  const glm::ivec3 wet_high = glm::clamp(wet.wet_high, glm::ivec3(0), wet.size);
   // What was wet and is dry, too.
-  glm::ivec3 low = glm::clamp(wet.wet_low, glm::ivec3(0), wet.size);
-  glm::ivec3 high = glm::clamp(wet.wet_high, glm::ivec3(0), wet.size);
-  if (map.version != 0) {
-    low = glm::min(low, map.low);
-    high = glm::max(high, map.high);
-  }
+  const glm::ivec3 low = map.version == 0 ? wet_low : glm::min(wet_low, map.low);
+  const glm::ivec3 high = map.version == 0 ? wet_high : glm::max(wet_high, map.high);
   const glm::ivec3 size = high - low;
   const auto first =
       std::size_t(low.x) +
@@ -52,8 +50,8 @@ void WetMaps::upload(const Wetness& wet, Map& map) {
   glPixelStorei(GL_UNPACK_ROW_LENGTH, 0);
   glPixelStorei(GL_UNPACK_ALIGNMENT, 4);
   map.version = wet.version;
-  map.low = glm::clamp(wet.wet_low, glm::ivec3(0), wet.size);
-  map.high = glm::clamp(wet.wet_high, glm::ivec3(0), wet.size);
+  map.low = wet_low;
+  map.high = wet_high;
 }
 
 void WetMaps::take(const Frame& frame) {

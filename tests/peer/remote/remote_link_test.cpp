@@ -41,15 +41,6 @@ TEST(RemoteLink, ASpectatorAsksForNothing) {
   EXPECT_TRUE(both.host.poses.empty());
 }
 
-TEST(RemoteLink, SeesWhereTheHostsTaskIs) {
-  Together both;
-  ASSERT_TRUE(both.run_until(LinkState::kLive));
-  EXPECT_EQ(both.status().task, TaskLines{});
-  both.host.say(wire::Task{"step 2 of 3", "Pour.", "0.1 kg", "Slowly."});
-  ASSERT_TRUE(both.run(1.0, [&] { return !both.status().task.title.empty(); }));
-  EXPECT_EQ(both.status().task, (TaskLines{"step 2 of 3", "Pour.", "0.1 kg", "Slowly."}));
-}
-
 TEST(RemoteLink, NamedGripsAreAskedForByNameAndNumber) {
   RemoteOptions options;
   options.grips = {"right", "0"};

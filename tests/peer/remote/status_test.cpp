@@ -2,6 +2,7 @@
 
 #include "net/clock.h"
 #include "peer/remote/remote_status.h"
+#include "scripted_host.h"
 
 namespace slosh {
 namespace {
@@ -32,6 +33,15 @@ TEST(RemoteStatus, SaysHowTheNetworkIs) {
   status.state = LinkState::kReconnecting;
   status.lost_ns = 0;
   EXPECT_EQ(connection_text(status, 0.0, 3 * kNanosecondsPerSecond), "contact lost, reconnecting for 3 s");
+}
+
+TEST(RemoteStatus, SaysWhereTheHostsTaskIs) {
+  test::Together both;
+  ASSERT_TRUE(both.run_until(LinkState::kLive));
+  EXPECT_EQ(both.status().task, TaskLines{});
+  both.host.say(wire::Task{"step 2 of 3", "Pour.", "0.1 kg", "Slowly."});
+  ASSERT_TRUE(both.run(1.0, [&] { return !both.status().task.title.empty(); }));
+  EXPECT_EQ(both.status().task, (TaskLines{"step 2 of 3", "Pour.", "0.1 kg", "Slowly."}));
 }
 
 }  // namespace
