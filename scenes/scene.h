@@ -6,6 +6,7 @@
 #include <array>
 #include <cstdint>
 #include <glm/glm.hpp>
+#include <limits>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -81,6 +82,37 @@ inline float usual_scattering(const glm::vec3& extinction) {
   return extinction.x + extinction.y + extinction.z >= 3.0f * 100.0f ? 1.0f : 0.2f;
 }
 
+/// What warms, thickens and sets. Only a scene in which temperatures differ, or something sets, has the pass
+/// that uses it (sim/passes/heat).
+struct Heat {
+  double temperature = 20.0;  ///< °C, at the start
+  double capacity = 4180.0;   ///< J/(kg·K), > 0
+  double conductivity = 0.6;  ///< W/(m·K), >= 0
+  /// Viscosity by temperature: °C, rising, and times Fluid::dynamic_viscosity, which is that of the start.
+  /// In between its logarithm is linear in the temperature; beyond the ends it stays. Empty: it stays.
+  struct Point {
+    double temperature, times;
+    bool operator==(const Point&) const = default;
+  };
+  std::vector<Point> viscosity;
+  /// It sets where it is at least as warm, or at most: from 0 to 1 within `sets_in` s.
+  double sets_above = std::numeric_limits<double>::infinity();   ///< °C
+  double sets_below = -std::numeric_limits<double>::infinity();  ///< °C
+  double sets_in = 0.0;                                          ///< s
+  double melts_above =
+      std::numeric_limits<double>::infinity();  ///< °C: there it goes back, within `melts_in`
+  double melts_in = 0.0;                        ///< s
+  double modulus = 0.0;    ///< Pa, Young's, of what has set wholly (passes/bonds); 0: it is only thicker
+  double tears_at = 0.5;   ///< strain above which it is torn for good
+  double set_times = 1.0;  ///< what has set wholly has so many times the viscosity; its logarithm is linear
+  bool starts_set = false;
+
+  bool sets() const { return sets_in > 0.0 || melts_in > 0.0; }
+  bool operator==(const Heat&) const = default;
+};
+inline constexpr std::size_t kMaxViscosityPoints = 8;
+inline constexpr double kColdest = -273.15, kHottest = 5000.0;  ///< °C
+
 struct Fluid {
   std::string name;
   double rest_density = 1000.0;             ///< kg/m³, > 0 (Eq 7's ρ⁰)
@@ -91,6 +123,7 @@ struct Fluid {
   float refraction = 1.33f;                 ///< refractive index, 1–3
   float scattering = 0.2f;  ///< 0–1: share of the light that F_e takes which comes back as F_c; else absorbed
   float roughness = 0.05f;  ///< 0–1, of the surface, as glTF has it
+  Heat heat{};
 
   bool operator==(const Fluid&) const = default;
 };
@@ -168,6 +201,7 @@ struct Body {
   double restitution = 0.0;  ///< 0–1
   bool measured = false;     ///< report the fluid's wrench on it even though it is fixed
   Material material;
+  std::optional<double> temperature{};  ///< °C, kept by all of it whatever it touches; none: no heat passes
 };
 
 /// A mesh that is only looked at.
@@ -231,7 +265,7 @@ struct Scene {
   std::vector<Grip> grips;
   std::vector<Gauge> gauges;  ///< these two change nothing that moves
   std::vector<Region> regions;
-  std::vector<TaskStep> task;  ///< may be empty. Not sent
+  std::vector<TaskStep> task;  ///< may be empty
   Camera camera;
   glm::vec3 light_direction{-0.4f, -1.0f, -0.35f};  ///< the way the light travels
 

@@ -14,6 +14,8 @@ bool needs(const Plan& plan, ColumnNeed need) {
       return corrects_gradients(plan.model);
     case ColumnNeed::kSolved:
       return plan.has(PassId::kPressureSolve);
+    case ColumnNeed::kHeat:
+      return plan.has(PassId::kHeat);
   }
   return true;
 }

@@ -23,6 +23,7 @@ enum class ColumnNeed : std::uint8_t {
   kPairViscosity,  ///< those with PassId::kPairViscosity
   kCorrected,      ///< those whose model corrects_gradients()
   kSolved,         ///< those with PassId::kPressureSolve
+  kHeat,           ///< those with PassId::kHeat
 };
 
 /// Where the GPU keeps a column: four to sixteen bytes, so that a neighbour is one load in the density pass
@@ -33,6 +34,7 @@ enum class Pack : std::uint8_t {
   kId,
   kKind,
   kSolved,
+  kHeat,
   kKey,
   kPressed,
   kViscosity,
@@ -40,6 +42,7 @@ enum class Pack : std::uint8_t {
   kPushB,
   kDrag,
   kForce,
+  kHeating,
   kNone,  ///< it has none
 };
 
@@ -57,6 +60,12 @@ enum class Pack : std::uint8_t {
   ROW(kind,      std::uint8_t,  kCarried, false, false,  kAlways,        kKind,          0)    /* RunConstants::kinds; follows from id */ \
   ROW(key,       std::uint32_t, kKey,     true,  false,  kAlways,        kKey,           0)    /* cell, or retired */ \
   ROW(solved,    float,         kCarried, true,  false,  kSolved,        kSolved,        0)    /* Pa, that the last step found */ \
+  ROW(temperature, float,       kCarried, true,  true,   kHeat,          kHeat,          0)    /* °C */         \
+  ROW(cure,      float,         kCarried, true,  true,   kHeat,          kHeat,          1)    /* 0 to 1: how far it has set */ \
+  ROW(from_bodies, float,       kCarried, true,  false,  kHeat,          kHeat,          2)    /* J, since the start */ \
+  ROW(thickness, float,         kCarried, true,  false,  kHeat,          kHeat,          3)    /* Pa·s, by the two first */ \
+  ROW(heating,   float,         kStep,    false, false,  kHeat,          kHeating,       0)    /* W */          \
+  ROW(body_heating, float,      kStep,    false, false,  kHeat,          kHeating,       1)    /* W, of it by bodies */ \
   ROW(pressure,  float,         kStep,    false, false,  kAlways,        kPressed,       3)    /* Pa; kCorrected: V²P, N·m⁴; kIncompressible: wanted ρ⁰/ρ − 1 */ \
   ROW(viscosity, float,         kStep,    false, false,  kPairViscosity, kViscosity,     0)    /* Pa·s */       \
   ROW(pxx,       float,         kStep,    false, false,  kCorrected,     kPushA,         0)    /* N·m⁴, the corrected */ \

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "sim/passes/heat/conduction.h"
+
 namespace slosh {
 
 FluidExtremes fluid_extremes(const Scene& scene) {
@@ -11,8 +13,9 @@ FluidExtremes fluid_extremes(const Scene& scene) {
     const Fluid& fluid = scene.fluids[volume.fluid];
     e.lightest = std::min(e.lightest, fluid.rest_density);
     e.heaviest = std::max(e.heaviest, fluid.rest_density);
-    e.least_viscous = std::min(e.least_viscous, fluid.dynamic_viscosity);
-    e.most_viscous = std::max(e.most_viscous, fluid.dynamic_viscosity);
+    const ViscosityRange range = viscosity_range(scene, fluid);
+    e.least_viscous = std::min(e.least_viscous, range.least);
+    e.most_viscous = std::max(e.most_viscous, range.most);
   }
   return e;
 }

@@ -27,6 +27,17 @@ class FluidSums {
     sums_.max_compression = std::max<double>(sums_.max_compression, constants_.rest_volume / volume - 1.0);
   }
 
+  /// Of the same particle, with kHeat. `temperature`: °C; `from_bodies`: J.
+  void add_heat(std::uint8_t kind_index, double temperature, double cure, double from_bodies) {
+    if (constants_.kinds[kind_index].probe) return;
+    sums_.heat += constants_.heat.kinds[kind_index].capacity * temperature;
+    sums_.heat_from_bodies += from_bodies;
+    sums_.cure += constants_.kinds[kind_index].mass * cure;
+    sums_.coldest = warm_ ? std::min(sums_.coldest, temperature) : temperature;
+    sums_.hottest = warm_ ? std::max(sums_.hottest, temperature) : temperature;
+    warm_ = true;
+  }
+
   /// What bodies have still to be given, and how often particles were put back.
   void add(const ImpulseSums& impulses) {
     for (std::size_t b = 0; b + 1 < impulses.size(); b += kImpulseWords) {
@@ -41,6 +52,7 @@ class FluidSums {
   Diagnostics finish(std::size_t started, std::uint64_t broken) const {
     Diagnostics d = sums_;
     if (d.mass > 0.0) d.center /= d.mass;
+    if (d.mass > 0.0) d.cure /= d.mass;
     d.retired = started - d.particles;
     d.lost = constants_.plan.walls_hold() ? std::min(broken, d.retired) : d.retired;
     d.spilled = d.retired - d.lost;
@@ -50,6 +62,7 @@ class FluidSums {
  private:
   const RunConstants& constants_;
   Diagnostics sums_;
+  bool warm_ = false;
 };
 
 }  // namespace slosh

@@ -11,6 +11,7 @@
 #include "sim/hash.h"
 #include "sim/math/result.h"
 #include "sim/passes/body_drag/body_drag.h"
+#include "sim/passes/bonds/bonds.h"
 #include "sim/passes/implicit_viscosity/implicit.h"
 #include "sim/passes/pass.h"
 #include "sim/run_constants.h"
@@ -49,6 +50,11 @@ class ParticleEngine {
   virtual bool save(ParticleState& out, ImpulseSums& impulses) const = 0;
   /// Takes a checked state over; particles that it lacks are out of the world. Clears status().
   virtual void restore(const ParticleState& state, const ImpulseSums& impulses) = 0;
+
+  /// With kBonds who is bound to whom, by id; else an empty table. False when the GPU failed.
+  virtual bool save_bonds(BondTable& out) const = 0;
+  /// Takes a checked table over, after restore().
+  virtual void restore_bonds(const BondTable& bonds) = 0;
 
   /// StatusBits so far. A GPU's may be those of the step before: the step does not wait for its last pass.
   virtual std::uint32_t status() const = 0;

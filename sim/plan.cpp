@@ -6,6 +6,7 @@
 
 #include "sim/fluid_extremes.h"
 #include "sim/math/format.h"
+#include "sim/passes/heat/conduction.h"
 #include "sim/passes/pass.h"
 #include "sim/step_limits.h"
 #include "sim/viscosity/artificial_viscosity.h"
@@ -73,6 +74,7 @@ SceneFacts facts_of(const Scene& scene, const Plan& plan) {
         body.point_probe && body.dynamic_viscosity > 0.0 && body.dynamic_viscosity != f.fluids.most_viscous;
   }
   f.viscous = f.fluid && (f.fluids.most_viscous > 0.0 || viscous_body);
+  f.heat = f.fluid && passes_heat(scene);
   f.one = f.fluids.least_viscous == f.fluids.most_viscous && !probe_differs;
   f.implicit = plan.implicit_viscosity && f.viscous;
   return f;
@@ -147,6 +149,7 @@ Plan make_plan(const Scene& scene, double spacing, bool may_be_implicit) {
   plan.time_step = limit.step;
   plan.time_step_reason = limit.reason;
   plan.max_speed = speed_limit(plan, plan.time_step);
+  if (plan.has(PassId::kHeat)) plan.heat_steps = heat_steps(scene, plan);
   list_passes(scene, plan);
   return plan;
 }

@@ -70,6 +70,7 @@ struct Plan {
   bool implicit_viscosity = false;  ///< kImplicitViscosity runs whenever anything is viscous
   bool passes_stress = false;       ///< kFluidStress runs whenever anything is viscous; no wall mirrors
   bool waits_for_bodies = false;    ///< walls move, and nothing keeps the fluid from waiting for them
+  int heat_steps = 1;               ///< steps that kHeat takes in one (passes/heat/conduction.h)
   int sub_steps = 1;                ///< that a step is made of, each time_step / sub_steps long
 
   PassSet runs;

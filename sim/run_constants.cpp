@@ -80,9 +80,12 @@ bool finite(const glm::vec3& v) {
 
 ParticleKind make_kind(const Scene& scene, double rest_density, double viscosity, double spacing,
                        bool probe) {
-  return {static_cast<float>(rest_density), static_cast<float>(viscosity),
+  return {static_cast<float>(rest_density),
+          static_cast<float>(viscosity),
           static_cast<float>(rest_density * std::pow(spacing, 3)),
-          static_cast<float>(pressing_density(scene, rest_density)), probe};
+          static_cast<float>(pressing_density(scene, rest_density)),
+          probe,
+          static_cast<float>(viscosity)};
 }
 
 // `noise`: Pa·s, the artificial viscosity; `thinnest`: Pa·s, of the fluids that there are. The finer layers
@@ -108,6 +111,7 @@ std::vector<ParticleKind> particle_kinds(const Scene& scene, double spacing) {
                     [&](const FluidVolume& v) { return static_cast<std::size_t>(v.fluid) == i; });
     const Fluid& f = there ? scene.fluids[i] : reference;
     kinds.push_back(make_kind(scene, f.rest_density, f.dynamic_viscosity, spacing, false));
+    kinds.back().least_viscosity = static_cast<float>(viscosity_range(scene, f).least);
   }
   // A probe is one more particle of the reference's kind (Eq 8), moved by its body.
   for (const Body& body : scene.bodies) {
@@ -121,7 +125,7 @@ std::vector<ParticleKind> particle_kinds(const Scene& scene, double spacing) {
 
 bool any_artificial_viscosity(std::span<const ParticleKind> kinds, float noise) {
   return std::any_of(kinds.begin(), kinds.end(), [&](const ParticleKind& kind) {
-    return artificial_viscosity_left(noise, kind.viscosity) > 0.0f;
+    return artificial_viscosity_left(noise, kind.least_viscosity) > 0.0f;
   });
 }
 
@@ -133,9 +137,9 @@ RunConstants make_run_constants(const Scene& scene, const SampledScene& sampled,
   const Box box = domain_of(scene, sampled, h);
   // Many particles can afford more cells than few: what empty ones cost is shared by them.
   constexpr double kCellsAParticle = 8.0;
-  c.grid = CellGrid(box.lower, box.upper, h,
-                    std::max(CellGrid::kMaxCells,
-                             kCellsAParticle * static_cast<double>(sampled.fluid_positions.size())));
+  c.grid = CellGrid(
+      box.lower, box.upper, h,
+      std::max(CellGrid::kMaxCells, kCellsAParticle * static_cast<double>(sampled.fluid_positions.size())));
   c.support_radius = static_cast<float>(h);
   with_model(c.plan.model, [&]<class Parts>() {
     c.force_scale = static_cast<float>(Parts::ForceKernel::scale(h));
@@ -166,6 +170,7 @@ RunConstants make_run_constants(const Scene& scene, const SampledScene& sampled,
   if (c.plan.model != ParticleModel::kIncompressible)
     c.load_compression = 0.5 * glm::length(scene.gravity) * fluid_heights(scene).load / c.plan.stiffness;
   c.kinds = particle_kinds(scene, spacing);
+  if (c.plan.has(PassId::kHeat)) c.heat = heat_constants(scene, c.plan);
   double heaviest = 0.0;
   for (const ParticleKind& kind : c.kinds) heaviest = std::max<double>(heaviest, kind.mass);
   c.impulse_units = impulse_units(heaviest > 0.0 ? heaviest : 1.0, c.plan.max_speed, spacing);
@@ -199,6 +204,12 @@ ParticleStart make_particle_start(const Scene& scene, const SampledScene& sample
     p.vy[i] = v.y;
     p.vz[i] = v.z;
     p.volume[i] = constants.rest_volume;
+    if (!constants.heat.kinds.empty()) {
+      const HeatKind& kind = constants.heat.kinds[p.kind[i]];
+      p.temperature[i] = kind.temperature;
+      p.cure[i] = kind.cure;
+      p.thickness[i] = thickness_of(kind, constants.kinds[p.kind[i]].viscosity, kind.temperature, kind.cure);
+    }
     p.id[i] = static_cast<std::uint32_t>(i);
     const bool whole = finite(x) && finite(v);
     const bool inside = whole && constants.grid.contains(x.x, x.y, x.z);

@@ -10,6 +10,7 @@
 #include "sim/columns.h"
 #include "sim/neighbours/cell_grid.h"
 #include "sim/passes/density/corrected_state.h"
+#include "sim/passes/heat/conduction.h"
 #include "sim/plan.h"
 #include "sim/walls/clamp_bodies.h"
 #include "sim/walls/clamp_impulse.h"
@@ -20,14 +21,16 @@ namespace slosh {
 /// What all particles of one fluid (or one probe) share.
 struct ParticleKind {
   float rest_density = 1000.0f;      ///< kg/m³
-  float viscosity = 0.0f;            ///< Pa·s
+  float viscosity = 0.0f;            ///< Pa·s, with kHeat that of the start (HeatKind)
   float mass = 0.0f;                 ///< kg
   float pressing_density = 1000.0f;  ///< kg/m³ that Eq 7 takes for it (step_limits.h, pressing_density)
   bool probe = false;                ///< moved by its body, not by the fluid integrator
+  float least_viscosity = 0.0f;      ///< Pa·s, below `viscosity` where kHeat lowers it
 };
 
 struct RunConstants {
   Plan plan;
+  HeatConstants heat;  ///< kHeat's; else empty
   CellGrid grid;
   float support_radius = 0.0f;              ///< m
   float force_scale = 0.0f;                 ///< the force kernel's constant, m⁻⁶

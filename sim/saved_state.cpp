@@ -166,6 +166,40 @@ std::size_t bytes_a_particle(const Plan& plan) {
   return bytes;
 }
 
+// Of each particle, by id, whether it has set and its bonds.
+void write_bonds(Sink& s, const BondTable& table) {
+  for (std::size_t id = 0; id < table.count.size(); ++id) {
+    s.raw(table.set[id]);
+    s.raw(table.count[id]);
+    s.raw(table.weight[id]);
+    for (std::uint8_t k = 0; k < table.count[id]; ++k) {
+      s.raw(table.row(id)[k].other);
+      s.raw(table.row(id)[k].rest);
+    }
+  }
+}
+
+void read_bonds(Source& s, std::size_t particles, float longest, BondTable& table) {
+  table.resize(particles);
+  for (std::size_t id = 0; id < particles && s.ok(); ++id) {
+    s.raw(table.set[id]);
+    s.raw(table.count[id]);
+    s.raw(table.weight[id]);
+    if (s.ok() && !(table.weight[id] >= 0.0f && table.weight[id] <= 2.0f))
+      return s.fail("it holds a weight of bonds that is none");
+    if (table.set[id] > 1 || table.count[id] > kMaxBonds)
+      return s.fail("it holds more bonds than there can be");
+    for (std::uint8_t k = 0; k < table.count[id]; ++k) {
+      Bond& bond = table.row(id)[k];
+      s.raw(bond.other);
+      s.raw(bond.rest);
+      if (s.ok() &&
+          (bond.other >= particles || bond.other == id || !(bond.rest > 0.0f) || bond.rest > longest))
+        return s.fail("it holds a bond that is none");
+    }
+  }
+}
+
 void write_frame(Sink& s, const StateFrame& f) {
   for (const std::uint64_t n :
        {f.fluid_particles, f.probes, f.body_particles, f.bodies, f.grips, f.fluids, f.scene}) {
@@ -232,6 +266,12 @@ void check_particles(Source& s, const StateFrame& frame, const RunConstants& con
       return s.fail("it holds a particle that is not finite");
     if (!(p.solved[i] >= 0.0f) || !std::isfinite(p.solved[i]))
       return s.fail("it holds a pressure that is none");
+    if (constants.plan.has(PassId::kHeat)) {
+      const bool warm = p.temperature[i] >= kColdest && p.temperature[i] <= 2.0 * kHottest;
+      if (!warm || !(p.cure[i] >= 0.0f && p.cure[i] <= 1.0f) || !(p.thickness[i] >= 0.0f) ||
+          !std::isfinite(p.thickness[i]) || !std::isfinite(p.from_bodies[i]))
+        return s.fail("it holds a temperature or a viscosity that is none");
+    }
     // A probe may be outside, with the hand that holds it.
     if (!probe && !constants.grid.contains(p.x[i], p.y[i], p.z[i]))
       return s.fail("it holds a particle that is outside the domain");
@@ -279,6 +319,7 @@ void write_state(const StateFrame& frame, const RunConstants& constants, const S
   std::vector<std::uint8_t> gone(p.size());
   for (std::size_t i = 0; i < p.size(); ++i) gone[i] = p.key[i] >= constants.grid.retired_key();
   s.column(std::span<const std::uint8_t>(gone));
+  if (constants.plan.has(PassId::kBonds)) write_bonds(s, state.bonds);
 }
 
 Result<bool> read_state(std::span<const std::uint8_t> bytes, const StateFrame& frame,
@@ -346,7 +387,9 @@ Result<bool> read_state(std::span<const std::uint8_t> bytes, const StateFrame& f
   s.raw(count);
   ParticleState& p = state.particles;
   // What is there decides how much is allocated.
-  if (s.ok() && s.left() != std::uint64_t{bytes_a_particle(constants.plan)} * count)
+  const bool bound = constants.plan.has(PassId::kBonds);
+  const std::uint64_t wanted = std::uint64_t{bytes_a_particle(constants.plan)} * count;
+  if (s.ok() && (bound ? s.left() < wanted : s.left() != wanted))
     s.fail("its length does not fit its number of particles");
   if (s.ok()) {
     p.resize(count);
@@ -354,6 +397,11 @@ Result<bool> read_state(std::span<const std::uint8_t> bytes, const StateFrame& f
     std::vector<std::uint8_t> gone(count);
     s.column(std::span(gone));
     check_particles(s, frame, constants, gone, p);
+  }
+  if (s.ok() && bound) {
+    const float longest = 2.0f * kBondReach * static_cast<float>(frame.spacing);
+    read_bonds(s, frame.fluid_particles + frame.probes, longest, state.bonds);
+    if (s.ok() && s.left() != 0) s.fail("it goes on behind its end");
   }
   if (!s.ok()) return Error{kWhere, s.problem(), ""};
   return true;

@@ -10,6 +10,7 @@
 #include "sim/bodies/rigid_body.h"
 #include "sim/columns.h"
 #include "sim/math/result.h"
+#include "sim/passes/bonds/bonds.h"
 #include "sim/run_constants.h"
 #include "sim/world.h"
 
@@ -44,6 +45,7 @@ struct SavedState {
   Hands::Stiffness grip_stiffness;      ///< one a grip
   std::vector<KeptImpulse> impulses;    ///< of contacts, pair by pair
   ImpulseSums walls;                    ///< what bodies have still to be given (walls/clamp_impulse.h)
+  BondTable bonds;                      ///< kBonds; else empty
   ParticleState particles;  ///< in the order that the engine has them: sums over neighbours depend on it
 };
 

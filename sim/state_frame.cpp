@@ -43,6 +43,20 @@ StateFrame state_frame(const Scene& scene, const Plan& plan, const ParticleStart
       real(part);
     }
   }
+  if (plan.has(PassId::kHeat)) {
+    for (const Fluid& fluid : scene.fluids) {
+      const Heat& h = fluid.heat;
+      for (const double part :
+           {h.temperature, h.capacity, h.conductivity, h.sets_above, h.sets_below, h.sets_in, h.melts_above,
+            h.melts_in, h.set_times, h.modulus, h.tears_at, h.starts_set ? 1.0 : 0.0})
+        real(part);
+      for (const Heat::Point& point : h.viscosity) {
+        real(point.temperature);
+        real(point.times);
+      }
+    }
+    for (const Body& body : scene.bodies) real(body.temperature.value_or(kColdest - 1.0));
+  }
   for (const std::uint8_t kind : start.particles.kind) print.add(kind);
   return {start.fluid_count,   start.probes.size(), start.fixed.size() + start.moving.size(),
           scene.bodies.size(), scene.grips.size(),  scene.fluids.size(),

@@ -7,6 +7,7 @@
 
 #include "sim/fluid_extremes.h"
 #include "sim/math/format.h"
+#include "sim/passes/heat/conduction.h"
 #include "sim/passes/implicit_viscosity/implicit.h"
 #include "sim/viscosity/stability.h"
 
@@ -23,6 +24,8 @@ constexpr double kLiveCourant = 1.0;
 // Pressure projection has no sound: dt ≤ factor · support radius / speed. Half as long again slows and
 // crushes particles in a dam break.
 constexpr double kSolvedCourant = 0.4;
+// A lattice of bonds is stable below 0.8 of the time that √(E/ρ) takes for a spacing.
+constexpr double kBondCourant = 0.5;
 constexpr double kFarShorter = 0.25;  // of the step that the flow asks for: density_time()
 // Free bodies above this share of the fluid layer around them need no shorter step. At 0.05 a released ball
 // rattled in water (tests/notebook/2026-11-26-light-bodies-and-stacks.md).
@@ -124,7 +127,15 @@ double reach_of(const Scene& scene, const Grip& grip) {
   return reach;
 }
 
-void limit_by_drag(const Scene& scene, const Plan& plan, const FluidExtremes& fluids, StepLimit& limit) {
+// m/s: √(E/ρ) of the stiffest that a fluid sets to.
+double fastest_in_solid(const Scene& scene) {
+  double speed = 0.0;
+  for (const Fluid& fluid : scene.fluids)
+    speed = std::max(speed, std::sqrt(fluid.heat.modulus / fluid.rest_density));
+  return speed;
+}
+
+void limit_by_diffusion(const Scene& scene, const Plan& plan, const FluidExtremes& fluids, StepLimit& limit) {
   if (plan.has(PassId::kImplicitViscosity)) {
     if (corrects_gradients(plan.model))
       limit.lower_to(artificial_viscosity_step(scene, plan, fluids),
@@ -138,6 +149,12 @@ void limit_by_drag(const Scene& scene, const Plan& plan, const FluidExtremes& fl
                    format("explicit viscosity of %.3g Pa·s in the fluid, %.3g Pa·s at walls",
                           fluids.most_viscous, 0.5 * (fluids.most_viscous + of_bodies)));
   }
+  if (plan.has(PassId::kBonds)) {
+    const double speed = fastest_in_solid(scene);
+    limit.lower_to(kBondCourant * plan.spacing / speed,
+                   format("bonds: %.1f · spacing / %.1f m/s", kBondCourant, speed));
+  }
+  if (plan.has(PassId::kHeat)) limit.lower_to(conduction_step(scene, plan), "explicit conduction of heat");
 }
 
 }  // namespace
@@ -204,7 +221,7 @@ StepLimit step_limit(const Scene& scene, Plan& plan) {
   if (plan.has(PassId::kPressureSolve)) {
     limit.lower_to(solved_step(plan, speed),
                    format("speed: %.2f · support radius / %.1f m/s", kSolvedCourant, speed));
-    limit_by_drag(scene, plan, fluids, limit);
+    limit_by_diffusion(scene, plan, fluids, limit);
     return limit;
   }
   const double courant = kCourant * plan.support_radius / (sound + speed);
@@ -224,7 +241,7 @@ StepLimit step_limit(const Scene& scene, Plan& plan) {
                    format("sound, at a body of %.3g times the mass of the fluid layer around it", share));
   }
   plan.sound_share = std::sqrt(std::min(1.0, share / kLightBody) / contrast);
-  limit_by_drag(scene, plan, fluids, limit);
+  limit_by_diffusion(scene, plan, fluids, limit);
   return limit;
 }
 

@@ -162,6 +162,23 @@ void World::fill_pressures(std::vector<float>& out) const {
   }
 }
 
+void World::fill_heat(std::vector<float>& temperatures, std::vector<float>& cures) const {
+  const Impl& w = *impl_;
+  for (std::vector<float>* out : {&temperatures, &cures})
+    out->assign(w.fluid_count, std::numeric_limits<float>::quiet_NaN());
+  ParticleState particles;
+  ImpulseSums walls;
+  if (!w.engine->save(particles, walls)) return;
+  const bool passed = w.plan().has(PassId::kHeat);
+  for (std::size_t i = 0; i < particles.size(); ++i) {
+    const std::size_t id = particles.id[i];
+    if (id >= w.fluid_count || particles.key[i] == w.constants.grid.retired_key()) continue;
+    const Heat& start = w.scene.fluids[w.fluid_of[id]].heat;
+    temperatures[id] = passed ? particles.temperature[i] : static_cast<float>(start.temperature);
+    cures[id] = passed ? particles.cure[i] : start.starts_set ? 1.0f : 0.0f;
+  }
+}
+
 void World::fill_velocities(std::vector<glm::vec3>& out) const {
   const Impl& w = *impl_;
   out.assign(w.fluid_count, glm::vec3(std::numeric_limits<float>::quiet_NaN()));
@@ -189,7 +206,7 @@ Result<bool> World::save(std::vector<std::uint8_t>& out) const {
   state.last_input = w.bodies.last_inputs();
   state.grip_stiffness = w.bodies.grip_stiffness();
   state.impulses = w.bodies.kept_impulses();
-  if (!w.engine->save(state.particles, state.walls))
+  if (!w.engine->save(state.particles, state.walls) || !w.engine->save_bonds(state.bonds))
     return Error{"the world", "cannot be saved: " + w.engine->failure(), "Run again with the CPU backend"};
   write_state(w.frame, w.constants, state, out);
   return true;
@@ -223,6 +240,7 @@ Result<bool> World::restore(std::span<const std::uint8_t> saved) {
   w.bodies.restore(std::move(state.bodies), std::move(state.grips), std::move(state.last_input),
                    std::move(state.grip_stiffness), std::move(state.impulses));
   w.engine->restore(state.particles, state.walls);
+  if (w.plan().has(PassId::kBonds)) w.engine->restore_bonds(state.bonds);
   std::fill(w.found.begin(), w.found.end(), Wrench{});
   std::fill(w.drag_matrices.begin(), w.drag_matrices.end(), Matrix6{});
   w.status = state.status & ~kStatusDeviceLost;

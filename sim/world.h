@@ -69,6 +69,11 @@ struct Diagnostics {
   double max_speed = 0.0;        ///< m/s
   double max_compression = 0.0;  ///< largest ρ/ρ⁰ − 1
   std::uint64_t clamped = 0;     ///< how often particles were kept from passing a wall, since the start
+  // With PassId::kHeat, else 0:
+  double heat = 0.0;                    ///< J, over what the fluid has at 0 °C
+  double heat_from_bodies = 0.0;        ///< J, that it was given by bodies since the start
+  double coldest = 0.0, hottest = 0.0;  ///< °C
+  double cure = 0.0;                    ///< 0–1: how far it has set, mean over its mass
   glm::dvec3 clamp_impulse{0.0};  ///< kg·m/s, what that took from the fluid in the last step and bodies get
                                   ///< in the next
 };
@@ -125,6 +130,9 @@ class World {
   /// what damps impacts; NaN for what has left the world, for all when the GPU failed. About a millisecond
   /// for 32 768.
   void fill_pressures(std::vector<float>& out) const;
+  /// °C, and 0–1 how far each has set, one a fluid particle by id: those of the start where the plan passes
+  /// no heat; NaN where fill_pressures has it. As long.
+  void fill_heat(std::vector<float>& temperatures, std::vector<float>& cures) const;
   /// m/s, one a fluid particle by id, half a step behind the positions (leap-frog); NaN where fill_pressures
   /// has it. As long.
   void fill_velocities(std::vector<glm::vec3>& out) const;

@@ -44,6 +44,7 @@ void World::Impl::take_parameters() {
   constants.gravity = glm::vec3(gravity_scale * scene.gravity);
   engine->set_constants(constants);
   packed = false;
+  if (plan().has(PassId::kHeat)) run_on_engine(PassId::kHeat, {}, {});  // viscosities follow at once
 }
 
 bool World::Impl::thin_fluids(double most) {

@@ -40,6 +40,10 @@ struct World::Impl {
   /// Where the bodies will be, as far as that is known: where they are, once they moved.
   std::span<const RigidBody> bodies_after(const SubStep& step);
   BodyForces body_forces(const SubStep& step) const;
+  /// With kHeat: whether this sub-step is the one in so many steps that passes it.
+  bool passes_heat_in(const SubStep& step) const {
+    return step.elapsed == 0.0 && tick % static_cast<std::uint64_t>(plan().heat_steps) == 0;
+  }
   void take_drags();
   glm::dvec3 gravity() const { return gravity_scale * scene.gravity; }
   void report(const SubStep& step);

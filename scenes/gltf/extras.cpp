@@ -135,10 +135,21 @@ std::string Extras::choice(const char* key, std::string fallback,
 }
 
 std::vector<double> Extras::numbers(const char* key, std::size_t count, Range each) {
+  return list(key, "Give a list of " + std::to_string(count) + " numbers, each " + range_text(each), each,
+              [count](std::size_t size) { return size == count; });
+}
+
+std::vector<double> Extras::pairs(const char* key, std::size_t most, Range each) {
+  return list(key,
+              "Give a list of 1 to " + std::to_string(most) + " pairs of numbers, each " + range_text(each),
+              each, [most](std::size_t size) { return size > 0 && size % 2 == 0 && size <= 2 * most; });
+}
+
+template <class F>
+std::vector<double> Extras::list(const char* key, const std::string& mend, Range each, F&& is_long) {
   const nlohmann::json* value = find(key);
   if (!value) return {};
-  const std::string mend = "Give a list of " + std::to_string(count) + " numbers, each " + range_text(each);
-  if (!value->is_array() || value->size() != count) {
+  if (!value->is_array() || !is_long(value->size())) {
     fail(key, "is " + shown(*value), mend);
     return {};
   }

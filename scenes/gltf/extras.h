@@ -40,7 +40,9 @@ class Extras {
   std::string choice(const char* key, std::string fallback, std::initializer_list<const char*> choices);
   glm::dvec3 vector(const char* key, glm::dvec3 fallback, Range each);
   std::vector<double> numbers(const char* key, std::size_t count, Range each);  ///< empty when absent
-  const nlohmann::json* object(const char* key);                                ///< nullptr when absent
+  /// 2 to 2 · `most` of them; empty when absent.
+  std::vector<double> pairs(const char* key, std::size_t most, Range each);
+  const nlohmann::json* object(const char* key);  ///< nullptr when absent
 
   /// Notes an error about `key` unless one about it is noted already: a second one would only follow from it.
   void fail(const std::string& key, std::string what, std::string mend);
@@ -57,6 +59,8 @@ class Extras {
  private:
   const nlohmann::json* find(const char* key);
   std::vector<std::string> unknown() const;
+  template <class F>
+  std::vector<double> list(const char* key, const std::string& mend, Range each, F&& is_long);
 
   const nlohmann::json& object_;
   std::string owner_;

@@ -112,6 +112,7 @@ Problem read_body(Reading& reading, int node) {
   read_mass(extras, volume, body);
   read_common(extras, body);
   read_wall_viscosity(extras, body);
+  if (extras.has("temperature_c")) body.temperature = extras.number("temperature_c", 20.0, kTemperatures);
   body.twist.linear = extras.vector("velocity_m_s", glm::dvec3(0.0), Range{-1e3, 1e3});
   body.twist.angular = extras.vector("angular_velocity_rad_s", glm::dvec3(0.0), Range{-1e3, 1e3});
   body.material = read_material(reading, reading.document.model.nodes[node].mesh);

@@ -93,12 +93,35 @@ Problem check_place(const Reading& reading, int node, int mesh, const Pose& pose
 /// With `closed`, an open, non-manifold or inward-facing mesh is an error that says how to mend it.
 Problem read_node_mesh(Reading& reading, int node, const glm::dmat3& rest, bool closed, int& mesh);
 
+inline constexpr gltf::Range kTemperatures{kColdest, kHottest};
+
 /// What read_fluid_fields reads.
-inline constexpr std::array kFluidFields{"density_kg_m3", "viscosity_pa_s", "color",      "extinction_per_m",
-                                         "gloss",         "refraction",     "scattering", "roughness"};
+inline constexpr std::array kFluidFields{"density_kg_m3",
+                                         "viscosity_pa_s",
+                                         "color",
+                                         "extinction_per_m",
+                                         "gloss",
+                                         "refraction",
+                                         "scattering",
+                                         "roughness",
+                                         "temperature_c",
+                                         "conductivity_w_m_k",
+                                         "heat_capacity_j_kg_k",
+                                         "viscosity_at_c",
+                                         "sets_above_c",
+                                         "sets_below_c",
+                                         "sets_in_s",
+                                         "set_viscosity_pa_s",
+                                         "melts_above_c",
+                                         "melts_in_s",
+                                         "starts_set",
+                                         "set_modulus_pa",
+                                         "tears_at"};
 
 /// Fields of a fluid, from a fluid node or from the scene's `fluids`.
 void read_fluid_fields(gltf::Extras& extras, Fluid& fluid);
+/// Of these what warms and sets; behind the others.
+void read_heat(gltf::Extras& extras, Fluid& fluid);
 
 /// World bounds of fluid volumes and bodies.
 struct Bounds {

@@ -20,6 +20,7 @@ void read_fluid_fields(gltf::Extras& extras, Fluid& fluid) {
   fluid.refraction = number("refraction", fluid.refraction, {1.0, 3.0});
   fluid.scattering = number("scattering", usual_scattering(fluid.extinction), {0.0, 1.0});
   fluid.roughness = number("roughness", fluid.roughness, {0.0, 1.0});
+  read_heat(extras, fluid);
 }
 
 Problem read_scene_fields(Reading& reading) {

@@ -100,6 +100,12 @@ class CpuEngine final : public ParticleEngine {
     s_.context.broken = state.broken;
   }
 
+  bool save_bonds(BondTable& out) const override {
+    out = s_.bonds.table;
+    return true;
+  }
+  void restore_bonds(const BondTable& bonds) override { s_.bonds.table = bonds; }
+
   std::uint32_t status() const override { return s_.context.status.load(std::memory_order_relaxed); }
   std::uint32_t take_status() override { return s_.context.status.exchange(0); }
 
@@ -118,7 +124,9 @@ class CpuEngine final : public ParticleEngine {
       print.add(s_.fluid.id[p]);
       for_each_column(
           [&](auto column, const auto& values) {
-            if constexpr (info(column).hashed && column != FluidColumn::id) print.add(values[p]);
+            if constexpr (info(column).hashed && column != FluidColumn::id) {
+              if (!values.empty()) print.add(values[p]);
+            }
           },
           s_.fluid);
     }
@@ -130,6 +138,8 @@ class CpuEngine final : public ParticleEngine {
       if (s_.fluid.key[p] >= s_.context.grid.retired_key()) continue;
       sums.add(s_.fluid.kind[p], {s_.fluid.x[p], s_.fluid.y[p], s_.fluid.z[p]},
                {s_.fluid.vx[p], s_.fluid.vy[p], s_.fluid.vz[p]}, s_.fluid.volume[p]);
+      if (!s_.fluid.temperature.empty())
+        sums.add_heat(s_.fluid.kind[p], s_.fluid.temperature[p], s_.fluid.cure[p], s_.fluid.from_bodies[p]);
     }
     sums.add(s_.impulses);
     return sums.finish(s_.fluid_count, s_.context.broken);

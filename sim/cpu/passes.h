@@ -22,6 +22,11 @@ struct PassContext : RunConstants {
 struct FluidViscosity;
 struct FluidPress;
 
+/// Pa·s of a fluid particle itself, whoever it meets.
+inline float particle_viscosity(const PassContext& context, const FluidParticles& fluid, std::size_t p) {
+  return fluid.thickness.empty() ? context.kinds[fluid.kind[p]].viscosity : fluid.thickness[p];
+}
+
 /// Sorts fluid particles by cell and reorders every column that lives on; forgets the retired ones.
 void sort_fluid(PassContext& context, ThreadTeam& team, FluidParticles& fluid, KeySorter& sorter,
                 GatheredColumns& scratch);

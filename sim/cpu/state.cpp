@@ -24,6 +24,7 @@ CpuState::CpuState(const RunConstants& constants, const ParticleStart& start,
                                [&](int b) { return !bodies[static_cast<std::size_t>(b)].free; });
   fluid.provide(context.plan, start.particles.kind.size());
   scratch.provide(context.plan, start.particles.kind.size());
+  if (context.plan.has(PassId::kBonds)) bonds.table.resize(start.particles.kind.size());
   for (const DistanceField& field : fields) clamp_solids.push_back(clamp_solid(field, field.view()));
 }
 

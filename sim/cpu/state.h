@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "sim/cpu/passes.h"
+#include "sim/passes/bonds/cpu.h"
 #include "sim/passes/pass.h"
 #include "sim/passes/pressure_solve/cpu_pairs.h"
 
@@ -49,6 +50,7 @@ struct CpuState {
   std::vector<Wrench> found;    // one a body, by this sub-step
   std::vector<BodyDrag> drags;  // one a body, by the same
   FluidPress pairs;             // of the density pass
+  CpuBonds bonds;               // kBonds
 
  private:
   std::array<std::shared_ptr<void>, kPassCount> memory_;

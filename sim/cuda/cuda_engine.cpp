@@ -160,6 +160,23 @@ class CudaEngine final : public ParticleEngine {
     status_ = 0;
   }
 
+  bool save_bonds(BondTable& out) const override {
+    out = {};
+    if (!s_.constants.plan.has(PassId::kBonds)) return true;
+    use_gpu();
+    out.resize(kinds_by_id_.size());
+    const BondView view = s_.bonds.view();
+    fetch(view.bonds, out.bonds.data(), out.bonds.size(), s_.check, s_.stream);
+    fetch(view.count, out.count.data(), out.count.size(), s_.check, s_.stream);
+    fetch(view.weight, out.weight.data(), out.weight.size(), s_.check, s_.stream);
+    fetch(view.set, out.set.data(), out.set.size(), s_.check, s_.stream);
+    return !s_.check.failed();
+  }
+  void restore_bonds(const BondTable& bonds) override {
+    use_gpu();
+    s_.bonds.write(bonds, s_.check, s_.stream);
+  }
+
   std::uint32_t status() const override { return status_ | (s_.check.failed() ? kStatusDeviceLost : 0u); }
   std::uint32_t take_status() override {
     const std::uint32_t seen = status();
@@ -210,7 +227,9 @@ class CudaEngine final : public ParticleEngine {
     for_each_present(packs, s_.step.grid, [&](std::size_t p) {
       print.add(packs.id[p]);
       for_each_value(packs, p, [&](auto column, const auto& value) {
-        if constexpr (info(column).hashed && column != FluidColumn::id) print.add(value);
+        if constexpr (info(column).hashed && column != FluidColumn::id) {
+          if (needs(s_.constants.plan, info(column).need)) print.add(value);
+        }
       });
     });
   }
@@ -222,6 +241,9 @@ class CudaEngine final : public ParticleEngine {
     for_each_present(packs, s_.step.grid, [&](std::size_t p) {
       const float4 x = packs.x[p], v = packs.v[p];
       sums.add(packs.kind[p], {x.x, x.y, x.z}, {v.x, v.y, v.z}, v.w);
+      if (!s_.constants.plan.has(PassId::kHeat)) return;
+      const float4 heat = packs.heat[p];
+      sums.add_heat(packs.kind[p], heat.x, heat.y, heat.z);
     });
     sums.add(fetch_impulses(s_.clamps, s_.check, s_.stream));
     return sums.finish(s_.fluid_count, broken_before_ + broken(packs, s_.step.grid));

@@ -73,8 +73,7 @@ void FluidBuffers::allocate(std::size_t count, const RunConstants& constants, co
   for (MovingPacks<DeviceBuffer>& packs : packs_)
     for_each_pack(
         [&](auto pack, auto& buffer) {
-          if (pack != Pack::kSolved || needs(constants.plan, ColumnNeed::kSolved))
-            buffer.allocate(with_nobodies, check);
+          if (needs(constants.plan, need_of(pack))) buffer.allocate(with_nobodies, check);
         },
         packs);
   pressed_.allocate(with_nobodies, check);
@@ -101,6 +100,7 @@ void FluidBuffers::allocate(std::size_t count, const RunConstants& constants, co
       rows->allocate(with_nobodies, check);
     left_.allocate(with_nobodies, check);
   }
+  if (needs(constants.plan, ColumnNeed::kHeat)) heating_.allocate(count, check);
   view_.count = static_cast<std::uint32_t>(count);
   view_.state = view_of(packs_[current_]);
   view_.coarse = coarse_.data();
@@ -113,6 +113,7 @@ void FluidBuffers::allocate(std::size_t count, const RunConstants& constants, co
   view_.passed_y = passed_y_.data();
   view_.passed_z = passed_z_.data();
   view_.left = left_.data();
+  view_.heating = heating_.data();
   view_.force = force_.data();
   view_.cells = starts_.view();
   allow_viscosities(constants, check);

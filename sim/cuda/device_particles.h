@@ -74,6 +74,7 @@ class FluidBuffers {
   DeviceBuffer<float> drag_z_, expansion_;
   DeviceBuffer<float4> passed_x_, passed_y_, passed_z_;  // kFluidStress
   DeviceBuffer<float> left_;                             // kFluidStress
+  DeviceBuffer<float2> heating_;                         // kHeat
   CellStarts starts_;
   DeviceBuffer<std::uint32_t> coarse_, near_counts_;
   DeviceBuffer<uint4> near_;

@@ -36,7 +36,7 @@ HostPacks from_state(const ParticleState& state, const CellGrid& world, const Ce
   std::vector<bool> seen(total, false);
   for (std::size_t p = 0; p < state.size(); ++p) {
     for_each_value(packs, p, [&](auto column, auto& value) {
-      if constexpr (info(column).saved) value = column_of<column>(state)[p];
+      if constexpr (info(column).saved) value = column_of<column>(state)[p];  // zeros where a plan has it not
     });
     const float4 x = packs.x[p];
     packs.key[p] = state.key[p] >= world.retired_key() ? grid.retired_key() : grid.cell_of(x.x, x.y, x.z);

@@ -96,6 +96,7 @@ struct MovingPacks {
   Store<std::uint32_t> id{};   ///< fixed for the run
   Store<std::uint8_t> kind{};  ///< into the table of kinds
   Store<float> solved{};       ///< Pa, that the last step found; there only with pressure projection
+  Store<float4> heat{};        ///< temperature, cure, from_bodies, thickness; there only with kHeat
   Store<std::uint32_t> key{};  ///< cell, or retired
 };
 
@@ -107,9 +108,19 @@ SLOSH_HD void for_each_pack(F&& f, Sets&&... sets) {
   f(std::integral_constant<Pack, Pack::kId>{}, sets.id...);
   f(std::integral_constant<Pack, Pack::kKind>{}, sets.kind...);
   f(std::integral_constant<Pack, Pack::kSolved>{}, sets.solved...);
+  f(std::integral_constant<Pack, Pack::kHeat>{}, sets.heat...);
   f(std::integral_constant<Pack, Pack::kKey>{}, sets.key...);
 }
 
+/// Those that only some plans have, and which.
+constexpr bool sometimes(Pack pack) {
+  return pack == Pack::kSolved || pack == Pack::kHeat;
+}
+constexpr ColumnNeed need_of(Pack pack) {
+  return pack == Pack::kSolved ? ColumnNeed::kSolved
+         : pack == Pack::kHeat ? ColumnNeed::kHeat
+                               : ColumnNeed::kAlways;
+}
 /// Whether a sort gathers a pack: when it carries one of its columns.
 constexpr bool carried(Pack pack) {
   for (const ColumnInfo& column : kFluidColumns) {
@@ -167,8 +178,9 @@ struct SortedFluid {
   float4* passed_x = nullptr;  ///< the rows of each one's pressure and stress tensor (kCorrected),
   float4* passed_y = nullptr;  ///< N·m⁴; in w viscosity times velocity, Pa·m
   float4* passed_z = nullptr;
-  float* left = nullptr;    ///< viscosity for Eq 9 with fluid, Pa·s
-  float4* force = nullptr;  ///< N; w: 1 where bodies are in the cells around, else 0
+  float* left = nullptr;      ///< viscosity for Eq 9 with fluid, Pa·s
+  float2* heating = nullptr;  ///< kHeat: W, and what of it is by bodies
+  float4* force = nullptr;    ///< N; w: 1 where bodies are in the cells around, else 0
   CellTable cells;
   NearLists near;  ///< not of kPaper
 };
@@ -287,6 +299,19 @@ void launch_scatter(const StepConstants& constants, const FluidView& fluid, std:
 void launch_density(const StepConstants& constants, const Plan& plan, const ParticleKind* kinds,
                     bool artificial, const SortedFluid& fluid, const SortedSurface& fixed,
                     const SortedSurface& moving, std::uint32_t* status, cudaStream_t stream);
+
+/// What kHeat takes besides the particles.
+struct HeatView {
+  const HeatKind* kinds = nullptr;
+  const float* bodies = nullptr;               ///< °C, one a body
+  float pair_scale = 0.0f, wall_scale = 0.0f;  ///< HeatConstants'; the second for each unit of a wall's share
+  bool by_volume = false;                      ///< that share is its volume
+};
+/// passes/heat/cuda.cu: what each gets from its neighbours over `dt` s, and with it its thickness; with no
+/// time that alone.
+void launch_heat(const StepConstants& constants, const ParticleKind* kinds, const HeatView& heat, float dt,
+                 const SortedFluid& fluid, const SortedSurface& fixed, const SortedSurface& moving,
+                 cudaStream_t stream);
 
 /// force.cu: Eq 5, 6 and 9 on fluid particles, to fluid.force.
 void launch_force(const StepConstants& constants, const Plan& plan, const ParticleKind* kinds,

@@ -97,6 +97,12 @@ __device__ inline RowRange row_of(const CellGrid& grid, const CellTable& cells, 
   return {__ldg(first), __ldg(first + grid.row_cells())};
 }
 
+/// Pa·s of a fluid particle itself, whoever it meets.
+__device__ inline float particle_viscosity(const SortedFluid& fluid, const ParticleKind* kinds,
+                                           std::uint32_t p) {
+  return fluid.state.heat ? fluid.state.heat[p].w : kinds[fluid.state.kind[p]].viscosity;
+}
+
 /// Calls f(j) for every particle in the nine rows around `cell`, in memory's order, or the thread's share of
 /// them.
 template <class Team = Alone, class F>

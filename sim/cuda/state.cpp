@@ -18,6 +18,11 @@ CudaState::CudaState(const RunConstants& constants_in, const ParticleStart& star
   const std::size_t largest = std::max({start.particles.size(), start.fixed.size(), start.moving.size()});
   space.allocate(static_cast<std::uint32_t>(largest), step.grid, check);
   kinds.upload(constants.kinds, check);
+  if (constants.plan.has(PassId::kHeat)) {
+    heat_kinds.upload(constants.heat.kinds, check);
+    body_temperatures.upload(constants.heat.bodies, check);
+  }
+  if (constants.plan.has(PassId::kBonds)) bonds.allocate(start.particles.kind.size(), check);
   sums.plan(constants.plan, start, bodies.size(), check);
   clamps.plan(constants, start, bodies.size(), check);
   viscous.plan(constants.plan, start, bodies.size(), sums, check);

@@ -8,6 +8,7 @@
 #include "sim/cuda/pass_clock.h"
 #include "sim/cuda/step_report.h"
 #include "sim/cuda/wall_clamps.h"
+#include "sim/passes/bonds/cuda.h"
 #include "sim/passes/implicit_viscosity/cuda.h"
 #include "sim/passes/pass.h"
 #include "sim/passes/pressure_solve/cuda.h"
@@ -45,6 +46,9 @@ struct CudaState {
   SurfaceBuffers fixed, moving;
   SortSpace space;
   DeviceBuffer<ParticleKind> kinds;
+  DeviceBuffer<HeatKind> heat_kinds;      // kHeat; else empty
+  BondBuffers bonds;                      // kBonds; else empty
+  DeviceBuffer<float> body_temperatures;  // likewise
   WrenchSums sums;
   WallClamps clamps;
   StepReport report;

@@ -12,10 +12,12 @@
   OWN(kPlaceBodies, place_bodies)                       \
   OWN(kDensity, density)                                \
   FUSED(kFluidStress, fluid_stress, kDensity)           \
+  OWN(kHeat, heat)                                      \
   OWN(kPressureForce, pressure_force)                   \
   FUSED(kOneViscosity, one_viscosity, kPressureForce)   \
   FUSED(kPairViscosity, pair_viscosity, kPressureForce) \
   FUSED(kWalls, walls, kPressureForce)                  \
+  OWN(kBonds, bonds)                                    \
   OWN(kWrenches, wrenches)                              \
   WORLD(kReadWrenches, read_wrenches)                   \
   WORLD(kPredictBodies, predict_bodies)                 \

@@ -26,6 +26,7 @@ struct SceneFacts {
   bool viscous = false;   ///< a fluid or a body has a viscosity
   bool one = false;       ///< all have the same
   bool implicit = false;  ///< implicit viscosity
+  bool heat = false;      ///< temperatures or what has set will change
 };
 
 /// Whether a scene needs a pass, and why, or why not, with the numbers that decided it.
@@ -47,6 +48,7 @@ struct PassInputs {
   std::span<const Twist> changes;       ///< of the bodies' solved twists from those that they began it with
   std::span<const ViscousBody> bodies;  ///< as implicit viscosity and the pressures' solve have to know them
   std::span<Wrench> wrenches;           ///< on the bodies; added to
+  bool look = false;                    ///< kBonds: who has set and who melted since is to be found
 };
 
 struct SubStep;

@@ -58,6 +58,8 @@ void compare_viscous();
 void compare_viscous_step();
 /// slipping_worlds.cpp: free-slip walls.
 void compare_slipping();
+/// warm_worlds.cpp: heat, setting and bonds.
+void compare_warm();
 /// pressed_worlds.cpp: pressure projection; single steps of it.
 void compare_pressed();
 void compare_pressed_steps();

@@ -1,7 +1,7 @@
 // The same worlds on the CPU and on the GPU (tests/cross/README.md). Prints every comparison with its
 // tolerance; exits 1 when one fails, 77 where there is no GPU. Usage: cross_world
-// [viscous|pressed|others|quick]: implicit viscosity alone, or pressure projection, or all but these, or
-// single steps of each
+// [viscous|pressed|slipping|warm|quick]: implicit viscosity alone, or pressure projection, or all but these,
+// or single steps of each
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -296,9 +296,10 @@ int main(int argc, char** argv) {
   if (quick) compare_pressed_steps();
   if (quick || whole || part == "slipping") compare_slipping();
   if (quick || whole) compare_parting_pairs();
+  if (quick || whole || part == "warm") compare_warm();
   if (whole || part == "viscous") compare_viscous();
   if (whole || part == "pressed") compare_pressed();
-  if (part == "viscous" || part == "pressed" || part == "slipping") return conclude();
+  if (part == "viscous" || part == "pressed" || part == "slipping" || part == "warm") return conclude();
   compare_single_steps();
   if (quick) return conclude();
   // Large enough to fill the GPU: blocks come and go in another order each time.

@@ -23,7 +23,7 @@ __attribute__((flatten)) void drag_chunk(const PassContext& context, FluidPartic
     if (!rows.count) continue;
     for (std::uint32_t p = runs[r].particles.begin; p < runs[r].particles.end; ++p) {
       const ParticleView<FloatBatch> self =
-          broadcast(fluid_columns, p, context.kinds[fluid.kind[p]].viscosity);
+          broadcast(fluid_columns, p, particle_viscosity(context, fluid, p));
       ForceSum<FloatBatch> sum{FloatBatch(0.0f), FloatBatch(0.0f), FloatBatch(0.0f)};
       for_each_dragged<Viscosity::kPair, Neighbours::kWalls>(
           self, moving_columns, rows, h, FloatBatch(1.0f),

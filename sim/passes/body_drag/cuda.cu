@@ -26,7 +26,7 @@ __global__ __launch_bounds__(kThreads) void drag_kernel(StepConstants c, const P
   float4 force = fluid.force[p];
   if (force.w == 0.0f) return;  // no body is near
   const ParticleView<float> self =
-      view(fluid.state.x[p], fluid.state.v[p], kinds[fluid.state.kind[p]].viscosity);
+      view(fluid.state.x[p], fluid.state.v[p], particle_viscosity(fluid, kinds, p));
   ForceSum<float> sum{0.0f, 0.0f, 0.0f};
   for_each_dragging<Team>(c, self, columns(moving), moving.cells, cell,
                           [&](const ParticleView<float>& i, float reach) {

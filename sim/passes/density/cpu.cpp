@@ -58,7 +58,7 @@ void compute_density_of(PassContext& context, ThreadTeam& team, FluidParticles& 
         densest = std::max(densest, state.compression);
         fluid.pressure[p] = state.pressure;
         fluid.volume[p] = state.volume;
-        if (viscosities) fluid.viscosity[p] = kind.viscosity;
+        if (viscosities) fluid.viscosity[p] = particle_viscosity(context, fluid, p);
       }
     }
     if (densest > kTooCompressed) context.status.fetch_or(kStatusCompressed, std::memory_order_relaxed);

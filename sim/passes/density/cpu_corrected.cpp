@@ -125,7 +125,7 @@ __attribute__((flatten)) float find_chunk(const Work& w, std::size_t begin, std:
         ++found;
       }
       const ParticleKind& kind = w.context.kinds[w.fluid.kind[p]];
-      block.viscosity[block.count] = kind.viscosity;
+      block.viscosity[block.count] = particle_viscosity(w.context, w.fluid, p);
       block.density[block.count] = kind.pressing_density;
       finish.find_walls(p, w.press.near[found - 1], block, block.count++);
     }

@@ -40,7 +40,7 @@ __global__ __launch_bounds__(kThreads) void density_kernel(StepConstants c, cons
                                              c.stiffness, c.tension, fluid.state.v[p].w, false);
   fluid.pressed[p] = make_float4(x.x, x.y, x.z, state.pressure);
   fluid.state.v[p].w = state.volume;
-  if (viscosities) fluid.viscosity[p] = kind.viscosity;
+  if (viscosities) fluid.viscosity[p] = particle_viscosity(fluid, kinds, p);
   if (state.compression > kTooCompressed) atomicOr(status, kStatusCompressed);
 }
 
@@ -127,7 +127,8 @@ __global__ __launch_bounds__(kThreads, kBlocksOfTensors) void corrected_density_
   if (Team::lane() != 0) return;
   const ParticleKind kind = kinds[fluid.state.kind[p]];
   const float4 motion = fluid.state.v[p];
-  const float in_u = one_viscosity ? kind.viscosity : 0.0f;
+  const float viscosity = particle_viscosity(fluid, kinds, p);
+  const float in_u = one_viscosity ? viscosity : 0.0f;
   const float velocity[3] = {motion.x, motion.y, motion.z};
   const float rest = c.correction.rest_moment;
   FlowAround around;
@@ -139,9 +140,9 @@ __global__ __launch_bounds__(kThreads, kBlocksOfTensors) void corrected_density_
   }
   auto state = [&] {
     if constexpr (solved) {
-      return solved_state(sum, c.correction, kind.viscosity, in_u, velocity);
+      return solved_state(sum, c.correction, viscosity, in_u, velocity);
     } else {
-      return corrected_state(sum, c.correction, kind.pressing_density, kind.viscosity, in_u, motion.w,
+      return corrected_state(sum, c.correction, kind.pressing_density, viscosity, in_u, motion.w,
                              velocity);
     }
   }();
@@ -153,7 +154,7 @@ __global__ __launch_bounds__(kThreads, kBlocksOfTensors) void corrected_density_
     const StressSums sums{
         around, number, {apart(motion.x, sum.vx), apart(motion.y, sum.vy), apart(motion.z, sum.vz)}};
     const FluidStress found = fluid_stress(sums, moment, share_of_stress(no_slip / c.rest_volume, rest), rest,
-                                           state.volume, kind.viscosity);
+                                           state.volume, viscosity);
     state.u[0] += found.rest.x;
     state.u[1] += found.rest.y;
     state.u[2] += found.rest.z;
@@ -165,7 +166,7 @@ __global__ __launch_bounds__(kThreads, kBlocksOfTensors) void corrected_density_
   fluid.push_b[p] = make_float4(state.push.yz, state.push.zz, state.u[0], state.u[1]);
   fluid.drag_z[p] = state.u[2];
   fluid.state.v[p].w = state.volume;  // nobody reads the w of others here
-  if (viscosities) fluid.viscosity[p] = kind.viscosity;
+  if (viscosities) fluid.viscosity[p] = viscosity;
   if (state.compression > kTooCompressed) atomicOr(status, kStatusCompressed);
 }
 

@@ -66,7 +66,7 @@ __device__ inline ParticleView<float> dragged(const SortedFluid& fluid, const Pa
   self.y = x.y;
   self.z = x.z;
   self.volume = x.w;
-  self.viscosity = kinds[fluid.state.kind[p]].viscosity;
+  self.viscosity = particle_viscosity(fluid, kinds, p);
   return self;
 }
 

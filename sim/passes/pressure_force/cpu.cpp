@@ -49,7 +49,7 @@ __attribute__((flatten)) void find_forces_of(const FluidWalk& walk, std::size_t 
     if constexpr (!Parts::kCorrected) fluid_rows = fluid.index.rows(context.grid, runs[r].cell);
     for (std::uint32_t p = own.begin; p < own.end; ++p) {
       const ParticleView<FloatBatch> self =
-          broadcast(fluid_columns, p, context.kinds[fluid.kind[p]].viscosity);
+          broadcast(fluid_columns, p, particle_viscosity(context, fluid, p));
       ForceSum<FloatBatch> sum{FloatBatch(0.0f), FloatBatch(0.0f), FloatBatch(0.0f)};
       if constexpr (!Parts::kCorrected)
         add_row_forces<Parts, Parts::kFluids, viscosity>(self, fluid_columns, fluid_rows, h, shape, sum);

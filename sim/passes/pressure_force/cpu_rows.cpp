@@ -51,7 +51,7 @@ void write_body_pairs(const DragWalk& w, std::uint32_t p, const RowList& fixed_r
   const FloatBatch h(w.context.support_radius), factor(w.factor), one(1.0f);
   const DragShape<FloatBatch> shape = in_all_lanes(w.context.drag_shape);
   const ParticleView<FloatBatch> self =
-      broadcast(columns(w.fluid), p, w.context.kinds[w.fluid.kind[p]].viscosity);
+      broadcast(columns(w.fluid), p, particle_viscosity(w.context, w.fluid, p));
   Symmetric<FloatBatch> by_walls = no_rate();
   const NeighborColumns fixed = columns(w.fixed), moving = columns(w.moving);
   for_each_batch(fixed_rows, [&](std::uint32_t j, FloatBatch weight) {

@@ -66,7 +66,7 @@ __global__ __launch_bounds__(kThreads, stresses ? kBlocksOfTensors
   if (cell >= c.grid.retired_key()) return;
   // Body particles have viscosities of their own, so against them Eq 9 holds even where one fluid has Eq 6.
   constexpr Viscosity kAgainstBodies = viscosity == Viscosity::kNone ? Viscosity::kNone : Viscosity::kPair;
-  ParticleView<float> self = view(fluid.pressed[p], fluid.state.v[p], kinds[fluid.state.kind[p]].viscosity);
+  ParticleView<float> self = view(fluid.pressed[p], fluid.state.v[p], particle_viscosity(fluid, kinds, p));
   if constexpr (Parts::kCorrected) read_corrected(columns(fluid), p, self);
   ForceSum<float> sum{0.0f, 0.0f, 0.0f};
   if constexpr (stresses) {

@@ -44,5 +44,7 @@ std::vector<ErrorCase> viscous_cases();     ///< torques and drags
 std::vector<ErrorCase> plane_flow_cases();  ///< flows of one direction, and a vortex
 std::vector<ErrorCase> flow_cases();        ///< dam breaks, a column in a flow, a jet
 std::vector<ErrorCase> contact_cases();     ///< bodies alone
+std::vector<ErrorCase> heat_cases();        ///< conduction
+std::vector<ErrorCase> solid_cases();       ///< what has set
 
 }  // namespace slosh::report
