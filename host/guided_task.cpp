@@ -4,14 +4,21 @@
 #include <cmath>
 #include <limits>
 
+#include "sim/fluid_measures.h"
+
 namespace slosh {
 namespace {
 
 constexpr double kRounding = 1e-9;  // s
 
 bool asks_for_fluid(const Goal& goal) {
-  return goal.kind == GoalKind::kMass || goal.kind == GoalKind::kLevel ||
+  return of_region(goal.kind) || goal.kind == GoalKind::kLevel ||
          std::ranges::any_of(goal.parts, asks_for_fluid);
+}
+
+bool asks_for_heat(const Goal& goal) {
+  return goal.kind == GoalKind::kTemperature || goal.kind == GoalKind::kSet ||
+         std::ranges::any_of(goal.parts, asks_for_heat);
 }
 
 std::size_t at(int index) {
@@ -25,11 +32,43 @@ GuidedTask::GuidedTask(const Scene& scene, const SampledScene& sampled)
   if (const double g = glm::length(scene.gravity); g > 0.0) up_ = -scene.gravity / g;
 }
 
-double GuidedTask::measure(const Goal& goal) const {
+double GuidedTask::measure_region(const Goal& goal) const {
+  if (goal.kind == GoalKind::kMass)
+    return goal.other < 0 ? fluid_->masses[at(goal.thing)]
+                          : fluid_->fluid_masses[at(goal.thing) * scene_.fluids.size() + at(goal.other)];
+  const Snapshot& now = instruments_.picture();
+  std::vector<glm::vec3> places;
+  std::vector<std::uint8_t> of_it;
+  double sum = 0.0, weights = 0.0;
+  for (const std::uint32_t i : instruments_.inside(at(goal.thing))) {
+    const std::size_t fluid = now.fluid_index[i];
+    const bool is_it = goal.other < 0 || fluid == at(goal.other);
+    if (goal.kind == GoalKind::kMixing) of_it.push_back(is_it);
+    if (!is_it && goal.kind != GoalKind::kMixing) continue;
+    places.push_back(now.positions[i]);
+    if (temperatures_.empty()) continue;
+    // Of a mixture that which all of it would come to.
+    const Fluid& of = scene_.fluids[fluid];
+    const bool warmth = goal.kind == GoalKind::kTemperature;
+    const double weight = of.rest_density * (warmth ? of.heat.capacity : 1.0);
+    sum += weight * static_cast<double>((warmth ? temperatures_ : cures_)[i]);
+    weights += weight;
+  }
   switch (goal.kind) {
-    case GoalKind::kMass:
-      return goal.other < 0 ? fluid_->masses[at(goal.thing)]
-                            : fluid_->fluid_masses[at(goal.thing) * scene_.fluids.size() + at(goal.other)];
+    case GoalKind::kSpread:
+      return spread_of(places, up_, instruments_.spacing()).area;
+    case GoalKind::kEvenness:
+      return spread_of(places, up_, instruments_.spacing()).evenness;
+    case GoalKind::kMixing:
+      return mixing_index(places, of_it, instruments_.spacing());
+    default:
+      return sum / weights;  // no number where there is no fluid
+  }
+}
+
+double GuidedTask::measure(const Goal& goal) const {
+  if (of_region(goal.kind)) return measure_region(goal);
+  switch (goal.kind) {
     case GoalKind::kLevel:
       return fluid_->levels[at(goal.thing)];
     case GoalKind::kTilt: {
@@ -44,9 +83,7 @@ double GuidedTask::measure(const Goal& goal) const {
                            bodies_.bodies[at(goal.other)].center_of_mass);
     case GoalKind::kForce:
       return glm::length(bodies_.grips[at(goal.thing)].on_hand.force);
-    case GoalKind::kAll:
-    case GoalKind::kAny:
-    case GoalKind::kNot:
+    default:
       break;
   }
   return std::numeric_limits<double>::quiet_NaN();
@@ -74,6 +111,8 @@ void GuidedTask::look(const World& world) {
   const TaskStep& step = scene_.task[state_.done.size()];
   world.fill(bodies_);
   if (asks_for_fluid(step.until)) fluid_ = &instruments_.measure(world);
+  temperatures_.clear();
+  if (asks_for_heat(step.until)) world.fill_heat(temperatures_, cures_);
   state_.asked = asked_of(step.until);
   state_.measured = measure(*state_.asked);
   const bool is_met = met(step.until);

@@ -44,13 +44,15 @@ class GuidedTask {
   bool met(const Goal& goal) const;
   /// The first leaf that keeps `goal` from being met; the first one where it is.
   const Goal* asked_of(const Goal& goal) const;
+  double measure_region(const Goal& goal) const;
   void look(const World& world);
 
   const Scene& scene_;
   Instruments instruments_;
   glm::dvec3 up_{0.0, 1.0, 0.0};
   BodySnapshot bodies_;
-  const Measurement* fluid_ = nullptr;  // where the step's goal asks for it
+  const Measurement* fluid_ = nullptr;       // where the step's goal asks for it
+  std::vector<float> temperatures_, cures_;  // likewise, one a particle
   double next_ = 0.0;
   bool begun_ = false;
   bool was_met_ = false;  // at the look before

@@ -11,13 +11,9 @@ namespace {
 std::string measured_text(const TaskState& state, const Scene& scene) {
   if (!state.asked || !std::isfinite(state.measured)) return {};
   const Goal& goal = *state.asked;
-  const bool low = std::isfinite(goal.at_least);
-  const bool high = std::isfinite(goal.at_most);
-  const std::string limits =
-      low && high ? format("%.3g to %.3g", goal.at_least, goal.at_most)
-                  : format("at %s %.3g", low ? "least" : "most", low ? goal.at_least : goal.at_most);
-  return measured_in_words(goal, scene) + format(" %.3g %s, wanted ", state.measured, unit_of(goal.kind)) +
-         limits;
+  const char* unit = unit_of(goal.kind);
+  return measured_in_words(goal, scene) +
+         format(" %.3g%s%s, wanted ", state.measured, *unit ? " " : "", unit) + limits_in_words(goal);
 }
 
 }  // namespace

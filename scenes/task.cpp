@@ -13,14 +13,6 @@ std::string number(double value) {
   return format("%.4g", value);
 }
 
-std::string limits(const Goal& goal) {
-  const bool low = std::isfinite(goal.at_least);
-  const bool high = std::isfinite(goal.at_most);
-  const std::string unit = std::string(" ") + unit_of(goal.kind);
-  if (low && high) return number(goal.at_least) + " to " + number(goal.at_most) + unit;
-  return (low ? "at least " + number(goal.at_least) : "at most " + number(goal.at_most)) + unit;
-}
-
 std::string joined(const std::vector<Goal>& parts, const char* between, const Scene& scene) {
   std::string text;
   for (const Goal& part : parts) text += (text.empty() ? "" : between) + in_words(part, scene);
@@ -33,6 +25,11 @@ const char* unit_of(GoalKind kind) {
   switch (kind) {
     case GoalKind::kMass:
       return "kg";
+    case GoalKind::kTemperature:
+      return "\xC2\xB0"
+             "C";
+    case GoalKind::kSpread:
+      return "m\xC2\xB2";
     case GoalKind::kLevel:
     case GoalKind::kDistance:
       return "m";
@@ -42,6 +39,9 @@ const char* unit_of(GoalKind kind) {
       return "m/s";
     case GoalKind::kForce:
       return "N";
+    case GoalKind::kSet:
+    case GoalKind::kEvenness:
+    case GoalKind::kMixing:
     case GoalKind::kAll:
     case GoalKind::kAny:
     case GoalKind::kNot:
@@ -50,11 +50,31 @@ const char* unit_of(GoalKind kind) {
   return "";
 }
 
+std::string limits_in_words(const Goal& goal) {
+  const bool low = std::isfinite(goal.at_least);
+  const bool high = std::isfinite(goal.at_most);
+  const char* unit = unit_of(goal.kind);
+  const std::string behind = *unit ? std::string(" ") + unit : std::string();
+  if (low && high) return number(goal.at_least) + " to " + number(goal.at_most) + behind;
+  return (low ? "at least " + number(goal.at_least) : "at most " + number(goal.at_most)) + behind;
+}
+
 std::string measured_in_words(const Goal& goal, const Scene& scene) {
   const auto other = static_cast<std::size_t>(std::max(goal.other, 0));
+  const std::string fluid = of_region(goal.kind) && goal.other >= 0 ? scene.fluids[other].name : "fluid";
   switch (goal.kind) {
     case GoalKind::kMass:
-      return (goal.other < 0 ? "fluid" : scene.fluids[other].name) + " in " + goal.name;
+      return fluid + " in " + goal.name;
+    case GoalKind::kTemperature:
+      return "temperature of " + fluid + " in " + goal.name;
+    case GoalKind::kSet:
+      return "set share of " + fluid + " in " + goal.name;
+    case GoalKind::kSpread:
+      return "spread of " + fluid + " in " + goal.name;
+    case GoalKind::kEvenness:
+      return "evenness of " + fluid + " in " + goal.name;
+    case GoalKind::kMixing:
+      return "mixing of " + fluid + " in " + goal.name;
     case GoalKind::kLevel:
       return "level at " + goal.name;
     case GoalKind::kTilt:
@@ -77,7 +97,7 @@ std::string in_words(const Goal& goal, const Scene& scene) {
   if (goal.kind == GoalKind::kAll) return joined(goal.parts, ", and ", scene);
   if (goal.kind == GoalKind::kAny) return joined(goal.parts, ", or ", scene);
   if (goal.kind == GoalKind::kNot) return "not (" + joined(goal.parts, "", scene) + ")";
-  return measured_in_words(goal, scene) + ": " + limits(goal);
+  return measured_in_words(goal, scene) + ": " + limits_in_words(goal);
 }
 
 }  // namespace slosh

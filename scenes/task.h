@@ -13,25 +13,32 @@ struct Scene;
 
 /// What is measured, or how goals are put together.
 enum class GoalKind : std::uint8_t {
-  kMass,      ///< kg of fluid in a region
-  kLevel,     ///< m along up, at a gauge
-  kTilt,      ///< degrees between a body's up, which is up at the start, and up
-  kSpeed,     ///< m/s of a body's centre of mass
-  kDistance,  ///< m between two bodies' centres of mass
-  kForce,     ///< N on a hand
-  kAll,       ///< every part is met
-  kAny,       ///< some part is
-  kNot,       ///< its one part is not
+  kMass,         ///< kg of fluid in a region
+  kTemperature,  ///< °C, mean of the fluid in a region
+  kSet,          ///< 0–1, how far the fluid in a region has set, mean
+  kSpread,       ///< m² that the fluid in a region covers, seen along up (sim/fluid_measures.h)
+  kEvenness,     ///< 0–1, of its depth there
+  kMixing,       ///< 0–1, of one fluid among all in a region: Lacey's index
+  kLevel,        ///< m along up, at a gauge
+  kTilt,         ///< degrees between a body's up, which is up at the start, and up
+  kSpeed,        ///< m/s of a body's centre of mass
+  kDistance,     ///< m between two bodies' centres of mass
+  kForce,        ///< N on a hand
+  kAll,          ///< every part is met
+  kAny,          ///< some part is
+  kNot,          ///< its one part is not
 };
 
 struct Goal {
   GoalKind kind = GoalKind::kAll;
   std::string name;  ///< of the region, gauge, body or grip that is measured
   int thing = -1;    ///< index of it into the scene's list of these
-  int other = -1;    ///< kDistance: the other body; kMass: index into Scene::fluids, −1 = all
+  int other = -1;    ///< kDistance: the other body; of a region: index into Scene::fluids, −1 = all
   double at_least = -std::numeric_limits<double>::infinity();
   double at_most = std::numeric_limits<double>::infinity();
   std::vector<Goal> parts;  ///< of kAll, kAny, kNot
+
+  bool operator==(const Goal&) const = default;
 };
 
 struct TaskStep {
@@ -42,6 +49,8 @@ struct TaskStep {
   double within =
       0.0;  ///< s that it should take; 0 = as long as it takes. Later it is done all the same, and late
   double hint_after = 10.0;  ///< s
+
+  bool operator==(const TaskStep&) const = default;
 };
 
 /// Where a task is, as a person reads it; all empty without one.
@@ -53,10 +62,17 @@ struct TaskLines {
   bool operator==(const TaskLines&) const = default;
 };
 
+/// Whether it measures the fluid in a region.
+constexpr bool of_region(GoalKind kind) {
+  return kind <= GoalKind::kMixing;
+}
+
 inline constexpr std::size_t kMaxTaskSteps = 100;
 inline constexpr std::size_t kMaxGoalParts = 32;  ///< of one goal
 inline constexpr int kDeepestGoal = 8;            ///< goals within goals
 
+/// "at least 0.15 kg", for people.
+std::string limits_in_words(const Goal& goal);
 /// "fluid in pan_inside: at least 0.15 kg", for people.
 std::string in_words(const Goal& goal, const Scene& scene);
 /// Of a goal that measures something, what that is: "fluid in pan_inside".

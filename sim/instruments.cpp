@@ -137,8 +137,11 @@ const Measurement& Instruments::measure(const World& world) {
   const std::size_t fluids = particle_mass_.size();
   result_.masses.assign(regions_.size(), 0.0);
   result_.fluid_masses.assign(regions_.size() * fluids, 0.0);
+  in_region_.resize(regions_.size());
   for (std::size_t r = 0; r < regions_.size(); ++r) {
+    in_region_[r].clear();
     find_inside(regions_[r], 0.0, [&](std::size_t i) {
+      in_region_[r].push_back(static_cast<std::uint32_t>(i));
       const std::size_t fluid = snapshot_.fluid_index[i];
       result_.masses[r] += particle_mass_[fluid];
       result_.fluid_masses[r * fluids + fluid] += particle_mass_[fluid];

@@ -14,15 +14,17 @@ namespace {
 using wire::Bytes;
 using wire::ByteView;
 
-// A package: its version, how the rest is coded, the rest. A scene with textures or light of its own has the
-// fifth version, else one whose fluids say how they look the fourth, else one that settles before its run the
-// third, else one with gauges or regions the second; any other the first, which programs from before these
-// can read. A peer needs the first, the fourth or the fifth.
+// A package: its version, how the rest is coded, the rest. A scene that passes heat or guides through a task
+// has the sixth version, else one with textures or light of its own the fifth, else one whose fluids say how
+// they look the fourth, else one that settles before its run the third, else one with gauges or regions the
+// second; any other the first, which programs from before these can read. A peer needs the first, the fourth
+// or the fifth.
 constexpr std::uint8_t kVersion = 1;
 constexpr std::uint8_t kMeasured = 2;
 constexpr std::uint8_t kSettled = 3;
 constexpr std::uint8_t kLooked = 4;
 constexpr std::uint8_t kTextured = 5;
+constexpr std::uint8_t kActing = 6;
 
 /// Without what packages before the fifth version leave out.
 Material plain(Material material) {
@@ -96,6 +98,11 @@ Fluid plain(Fluid fluid) {
 }
 
 std::uint8_t version_of(const Scene& scene) {
+  if (!scene.task.empty()) return kActing;
+  for (const Body& body : scene.bodies)
+    if (body.temperature) return kActing;
+  for (const Fluid& fluid : scene.fluids)
+    if (fluid.heat != Heat{}) return kActing;
   for (const Body& body : scene.bodies)
     if (body.material != plain(body.material)) return kTextured;
   for (const Picture& picture : scene.pictures)
@@ -108,13 +115,92 @@ std::uint8_t version_of(const Scene& scene) {
 
 // What a version has, of a scene of the last one.
 template <class F>
-wire::Fault with_version(std::uint8_t version, wire::TexturedScene& whole, F&& f) {
+wire::Fault with_version(std::uint8_t version, wire::ActingScene& acting, F&& f) {
+  wire::TexturedScene& whole = acting.textured;
+  if (version == kActing) return f(acting);
   if (version == kTextured) return f(whole);
   if (version == kLooked) return f(whole.looked);
   if (version == kSettled) return f(whole.looked.settled);
   if (version == kMeasured) return f(whole.looked.settled.measured);
   return f(whole.looked.settled.measured.packed);
 }
+
+/// A goal and what it is made of, one behind the other.
+void flatten(const Goal& goal, std::vector<wire::SentGoal>& goals) {
+  wire::SentGoal sent{goal, static_cast<std::uint32_t>(goal.parts.size())};
+  sent.goal.parts.clear();
+  sent.goal.at_least = wire::finite_limit(goal.at_least);
+  sent.goal.at_most = wire::finite_limit(goal.at_most);
+  goals.push_back(std::move(sent));
+  for (const Goal& part : goal.parts) flatten(part, goals);
+}
+
+std::string name_of(const Scene& scene, const Goal& goal) {
+  const auto thing = static_cast<std::size_t>(std::max(goal.thing, 0));
+  if (of_region(goal.kind)) return scene.regions[thing].name;
+  switch (goal.kind) {
+    case GoalKind::kLevel:
+      return scene.gauges[thing].name;
+    case GoalKind::kForce:
+      return scene.grips[thing].name;
+    case GoalKind::kTilt:
+    case GoalKind::kSpeed:
+    case GoalKind::kDistance:
+      return scene.bodies[thing].name;
+    default:
+      return {};
+  }
+}
+
+/// The goal at `at`, with its parts; false where it is not whole, or deeper than any may be.
+bool unflatten(const std::vector<wire::SentGoal>& goals, const Scene& scene, std::size_t& at, Goal& goal,
+               int depth = 0) {
+  if (at >= goals.size() || depth > kDeepestGoal) return false;
+  const wire::SentGoal& sent = goals[at++];
+  goal = sent.goal;
+  goal.at_least = wire::open_limit(goal.at_least);
+  goal.at_most = wire::open_limit(goal.at_most);
+  goal.name = name_of(scene, goal);
+  const bool made_of_parts = goal.kind >= GoalKind::kAll;
+  if (made_of_parts ? sent.parts == 0 : sent.parts > 0) return false;
+  if (goal.kind == GoalKind::kNot && sent.parts != 1) return false;
+  goal.parts.resize(sent.parts);
+  for (Goal& part : goal.parts)
+    if (!unflatten(goals, scene, at, part, depth + 1)) return false;
+  return true;
+}
+
+/// What acts in a scene besides fluid, bodies and hands, as it travels.
+void fill_acting(const Scene& scene, wire::ActingScene& acting) {
+  for (const Fluid& fluid : scene.fluids) {
+    Heat heat = fluid.heat;
+    for (double* limit : {&heat.sets_above, &heat.sets_below, &heat.melts_above})
+      *limit = wire::finite_limit(*limit);
+    acting.heats.push_back(std::move(heat));
+  }
+  for (const Body& body : scene.bodies) acting.temperatures.push_back(body.temperature);
+  acting.task = scene.task;
+  for (TaskStep& step : acting.task) {
+    flatten(step.until, acting.goals);
+    step.until = {};
+  }
+}
+
+/// The reverse; false where goals do not fit the steps.
+bool take_acting(wire::ActingScene& acting, Scene& scene) {
+  for (std::size_t i = 0; i < scene.fluids.size(); ++i) {
+    Heat& heat = scene.fluids[i].heat = std::move(acting.heats[i]);
+    for (double* limit : {&heat.sets_above, &heat.sets_below, &heat.melts_above})
+      *limit = wire::open_limit(*limit);
+  }
+  for (std::size_t i = 0; i < scene.bodies.size(); ++i) scene.bodies[i].temperature = acting.temperatures[i];
+  scene.task = std::move(acting.task);
+  std::size_t at = 0;
+  for (TaskStep& step : scene.task)
+    if (!unflatten(acting.goals, scene, at, step.until)) return false;
+  return at == acting.goals.size();
+}
+
 enum Coding : std::uint8_t { kStored, kZstd };
 constexpr std::size_t kHead = 2;
 
@@ -130,6 +216,9 @@ void keep_seen(Scene& scene) {
   scene.settle = 0.0;
   scene.gauges.clear();
   scene.regions.clear();
+  scene.task.clear();
+  for (Fluid& fluid : scene.fluids) fluid.heat = {};
+  for (Body& body : scene.bodies) body.temperature.reset();
   std::vector<int> moved(scene.meshes.size(), -1);
   std::vector<TriangleMesh> kept;
   const auto keep = [&](int& mesh) {
@@ -180,16 +269,18 @@ std::vector<std::string> images_left_behind(const Scene& scene) {
 }
 
 Result<Bytes> pack_scene(const Scene& scene, double spacing, SceneParts parts) {
-  wire::TexturedScene whole{{{{{scene, spacing}}}, scene.fluids}, {}, {}};
+  wire::ActingScene acting{{{{{{scene, spacing}}}, scene.fluids}, {}, {}}, {}, {}, {}, {}};
+  wire::TexturedScene& whole = acting.textured;
   Scene& sent = whole.looked.settled.measured.packed.scene;
   if (parts == SceneParts::kSeen) keep_seen(sent);
   keep_sent_images(sent);
   for (const TriangleMesh& mesh : sent.meshes) whole.texcoords.push_back(mesh.texcoords);
   each_material(sent, [&](Material& material) { whole.materials.push_back(material); });
   const std::uint8_t version = version_of(sent);
+  if (version == kActing) fill_acting(sent, acting);
   Bytes content;
   if (const wire::Fault fault =
-          with_version(version, whole, [&](auto& fields) { return wire::encode(fields, content); })) {
+          with_version(version, acting, [&](auto& fields) { return wire::encode(fields, content); })) {
     return Error{"scene '" + scene.name + "'", "cannot be sent or recorded: " + fault.text(),
                  "net/WIRE_FORMAT.md has the limits"};
   }
@@ -217,7 +308,7 @@ Result<Bytes> pack_scene(const Scene& scene, double spacing, SceneParts parts) {
 Result<UnpackedScene> unpack_scene(ByteView package) {
   if (package.size() < kHead) return damaged("it is empty");
   if (package.size() > wire::kMaxSceneBytes + kHead) return damaged("it is too large");
-  if (package[0] < kVersion || package[0] > kTextured)
+  if (package[0] < kVersion || package[0] > kActing)
     return damaged("its version is " + std::to_string(package[0]));
   if (package[1] > kZstd) return damaged("its coding is " + std::to_string(package[1]));
   ByteView content = package.subspan(kHead);
@@ -228,9 +319,10 @@ Result<UnpackedScene> unpack_scene(ByteView package) {
     unpacked = std::move(result.value());
     content = unpacked;
   }
-  wire::TexturedScene whole;
+  wire::ActingScene acting;
+  wire::TexturedScene& whole = acting.textured;
   if (const wire::Fault fault =
-          with_version(package[0], whole, [&](auto& fields) { return wire::decode(content, fields); })) {
+          with_version(package[0], acting, [&](auto& fields) { return wire::decode(content, fields); })) {
     return damaged(fault.text());
   }
   wire::PackedScene& packed = whole.looked.settled.measured.packed;
@@ -242,7 +334,7 @@ Result<UnpackedScene> unpack_scene(ByteView package) {
     fluid.scattering = look.scattering;
     fluid.roughness = look.roughness;
   }
-  if (package[0] == kTextured) {
+  if (package[0] >= kTextured) {
     for (std::size_t i = 0; i < packed.scene.meshes.size(); ++i)
       packed.scene.meshes[i].texcoords = std::move(whole.texcoords[i]);
     auto read = whole.materials.begin();
@@ -253,6 +345,8 @@ Result<UnpackedScene> unpack_scene(ByteView package) {
       ++read;
     });
   }
+  if (package[0] == kActing && !take_acting(acting, packed.scene))
+    return damaged("goals of its task do not fit its steps");
   return UnpackedScene{std::move(packed.scene), packed.spacing};
 }
 

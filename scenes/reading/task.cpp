@@ -18,9 +18,12 @@ struct Measured {
   const char* of;  // what it names
 };
 constexpr Measured kMeasured[] = {
-    {"mass_kg", GoalKind::kMass, "region"},      {"level_m", GoalKind::kLevel, "gauge"},
-    {"tilt_deg", GoalKind::kTilt, "body"},       {"speed_m_s", GoalKind::kSpeed, "body"},
-    {"distance_m", GoalKind::kDistance, "body"}, {"force_n", GoalKind::kForce, "grip"},
+    {"mass_kg", GoalKind::kMass, "region"},      {"temperature_c", GoalKind::kTemperature, "region"},
+    {"set", GoalKind::kSet, "region"},           {"spread_m2", GoalKind::kSpread, "region"},
+    {"evenness", GoalKind::kEvenness, "region"}, {"mixing", GoalKind::kMixing, "region"},
+    {"level_m", GoalKind::kLevel, "gauge"},      {"tilt_deg", GoalKind::kTilt, "body"},
+    {"speed_m_s", GoalKind::kSpeed, "body"},     {"distance_m", GoalKind::kDistance, "body"},
+    {"force_n", GoalKind::kForce, "grip"},
 };
 struct Together {
   const char* key;
@@ -33,6 +36,13 @@ std::vector<std::string> names_of(const std::vector<Thing>& things) {
   std::vector<std::string> names;
   for (const Thing& thing : things) names.push_back(thing.name);
   return names;
+}
+
+/// "mass_kg, …, ".
+std::string known_kinds() {
+  std::string list;
+  for (const Measured& measured : kMeasured) list += std::string(measured.key) + ", ";
+  return list;
 }
 
 /// Reads goals, and keeps what is wrong with them.
@@ -70,8 +80,7 @@ class Goals {
     }
     if (kinds != 1) {
       fail(owner, kinds == 0 ? "says nothing that can be measured" : "says more than one thing to measure",
-           "Give one of mass_kg, level_m, tilt_deg, speed_m_s, distance_m, force_n, all, any, not; several "
-           "goals go together by all or any");
+           "Give one of " + known_kinds() + "all, any, not; several goals go together by all or any");
       return goal;
     }
     if (goal.kind < GoalKind::kAll) read_limits(fields, owner, goal);
@@ -89,7 +98,7 @@ class Goals {
 
   std::vector<std::string> names_of(GoalKind kind) const {
     const Scene& scene = reading_.scene;
-    if (kind == GoalKind::kMass) return reading::names_of(scene.regions);
+    if (of_region(kind)) return reading::names_of(scene.regions);
     if (kind == GoalKind::kLevel) return reading::names_of(scene.gauges);
     if (kind == GoalKind::kForce) return reading::names_of(scene.grips);
     return reading::names_of(scene.bodies);
@@ -126,10 +135,13 @@ class Goals {
     if (fields.has("at_most")) goal.at_most = fields.number("at_most", 0.0, gltf::kAnyNumber);
     if (!fields.has("at_least") && !fields.has("at_most"))
       fields.fail("at_least", "is missing, and at_most too",
-                  std::string("Give one of them, or both, in ") + unit_of(goal.kind));
+                  "Give one of them, or both" +
+                      (*unit_of(goal.kind) ? std::string(", in ") + unit_of(goal.kind) : std::string()));
     else if (goal.at_least > goal.at_most)
       fields.fail("at_least", "is above at_most", "Make it the smaller of the two");
-    if (goal.kind == GoalKind::kMass && fields.has("fluid"))
+    if (goal.kind == GoalKind::kMixing && !fields.has("fluid"))
+      fields.fail("fluid", "is missing", "Name the fluid that is to be mixed in: one of the scene's");
+    if (of_region(goal.kind) && fields.has("fluid"))
       goal.other = find(fields.text("fluid", ""), reading::names_of(reading_.scene.fluids), "fluid",
                         owner + ": extras.fluid");
     if (goal.kind == GoalKind::kDistance)

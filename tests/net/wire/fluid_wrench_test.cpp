@@ -85,7 +85,7 @@ std::string refusal(const FluidWrench& message) {
 
 TEST(FluidWrench, MatricesThatWouldGiveEnergyAreRefusedByName) {
   ASSERT_EQ(refusal(valid()), "");
-  for (SemidefiniteCode FluidWrench::*which :
+  for (SemidefiniteCode FluidWrench::* which :
        {&FluidWrench::stiffness, &FluidWrench::damping, &FluidWrench::added_mass}) {
     const std::string name = which == &FluidWrench::stiffness ? "stiffness"
                              : which == &FluidWrench::damping ? "damping"

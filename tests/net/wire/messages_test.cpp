@@ -120,12 +120,9 @@ TEST(Messages, DispatchFindsTheTypeOrSaysThatThereIsNone) {
   EXPECT_EQ(dispatch(PeerControl{}, 16, encoded(hello), handle).text(),
             "type: 16 is no message that may come here");
   EXPECT_EQ(dispatch(PeerControl{}, 1, ByteView{}, handle).text(), "version: ends too early");
-  EXPECT_EQ(dispatch(PeerControl{}, 1, encoded(hello),
-                     [](auto&) {
-                       return Fault{"turn", "said twice"};
-                     })
-                .text(),
-            "turn: said twice");
+  EXPECT_EQ(
+      dispatch(PeerControl{}, 1, encoded(hello), [](auto&) { return Fault{"turn", "said twice"}; }).text(),
+      "turn: said twice");
   EXPECT_EQ(dispatch_datagram(PeerDatagrams{}, ByteView{}, handle).text(), "type: ends too early");
   EXPECT_FALSE(dispatch_datagram(PeerDatagrams{}, datagram(ClockPing{7, 8}), handle));
 }

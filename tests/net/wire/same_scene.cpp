@@ -52,6 +52,7 @@ void expect_same_scene(const Scene& a, const Scene& b) {
     SAME(fluids[i].refraction);
     SAME(fluids[i].scattering);
     SAME(fluids[i].roughness);
+    SAME(fluids[i].heat);
   }
   for (std::size_t i = 0; i < a.fluid_volumes.size(); ++i) {
     SAME(fluid_volumes[i].name);
@@ -76,6 +77,7 @@ void expect_same_scene(const Scene& a, const Scene& b) {
     SAME(bodies[i].restitution);
     SAME(bodies[i].measured);
     SAME(bodies[i].material);
+    SAME(bodies[i].temperature);
   }
   for (std::size_t i = 0; i < a.pictures.size(); ++i) {
     SAME(pictures[i].name);
@@ -110,6 +112,7 @@ void expect_same_scene(const Scene& a, const Scene& b) {
     SAME(regions[i].body);
     SAME(regions[i].pose);
   }
+  SAME(task);
   SAME(camera.eye);
   SAME(camera.target);
   SAME(camera.vertical_fov_deg);

@@ -9,32 +9,18 @@
 #include "net/wire/scene_fields.h"
 #include "scenes/load.h"
 #include "tests/net/wire/damage.h"
+#include "tests/net/wire/package_kit.h"
 #include "tests/net/wire/same_scene.h"
 #include "tests/support/small_scene.h"
 
 namespace slosh {
 namespace {
 
+using test::package_error;
+using test::packed;
+using test::stored;
 using wire::Bytes;
 using wire::ByteView;
-
-Bytes packed(const Scene& scene, SceneParts parts = SceneParts::kAll) {
-  const Result<Bytes> bytes = pack_scene(scene, 0.01, parts);
-  EXPECT_TRUE(static_cast<bool>(bytes)) << bytes.error().text();
-  return bytes ? bytes.value() : Bytes{};
-}
-
-/// A package whose content is stored as it is, so that its bytes can be chosen.
-Bytes stored(const Bytes& content) {
-  Bytes package{1, 0};
-  package.insert(package.end(), content.begin(), content.end());
-  return package;
-}
-
-std::string package_error(ByteView package) {
-  const Result<UnpackedScene> scene = unpack_scene(package);
-  return scene ? "" : scene.error().text();
-}
 
 TEST(ScenePackage, ShippedScenesComeBackToTheBit) {
   for (const SceneEntry& entry : shipped_scenes()) {

@@ -1,0 +1,80 @@
+// Heat and guided tasks on their way in a scene's package.
+#include <gtest/gtest.h>
+
+#include "net/wire/scene_fields.h"
+#include "net/wire/scene_package.h"
+#include "tests/net/wire/package_kit.h"
+#include "tests/net/wire/same_scene.h"
+#include "tests/support/small_scene.h"
+
+namespace slosh {
+namespace {
+
+using test::package_error;
+using test::packed;
+using test::stored;
+using wire::Bytes;
+
+TEST(ActingScene, HeatAndTaskTravelWithAWholeScene) {
+  Scene scene = test::small_scene();
+  Heat& heat = scene.fluids[0].heat;
+  heat.temperature = 35.5;
+  heat.viscosity = {{20.0, 1.0}, {60.0, 0.125}};
+  heat.sets_above = 70.0;
+  heat.sets_in = 8.0;
+  heat.set_times = 50.0;
+  scene.bodies[0].temperature = 180.0;
+  scene.gauges.push_back({"level", 0, {0.1, 0.2, 0.3}});
+  Goal level{GoalKind::kLevel, "level", 0}, leans{GoalKind::kTilt, scene.bodies[1].name, 1};
+  level.at_least = 0.2;
+  leans.at_most = 10.0;
+  Goal straight{GoalKind::kNot};
+  straight.parts = {leans};
+  Goal both{GoalKind::kAll};
+  both.parts = {straight, level};
+  scene.task = {{"Fill it.", "Slowly.", both, 1.5, 20.0, 5.0}, {"Set it down.", "", leans}};
+  const Bytes all = packed(scene);
+  EXPECT_EQ(all[0], 6);
+  const Result<UnpackedScene> back = unpack_scene(all);
+  ASSERT_TRUE(static_cast<bool>(back)) << back.error().text();
+  test::expect_same_scene(back.value().scene, scene);
+  const Result<UnpackedScene> seen = unpack_scene(packed(scene, SceneParts::kSeen));
+  EXPECT_EQ(packed(scene, SceneParts::kSeen)[0], 1) << "a peer is told what to do, and steps nothing";
+  EXPECT_TRUE(seen.value().scene.task.empty());
+  scene.task[0].until.parts[1].thing = 3;
+  EXPECT_NE(pack_scene(scene, 0.01, SceneParts::kAll).error().text().find("is not in the scene"),
+            std::string::npos);
+}
+
+// A goal that says it has more parts than come, and one with a part too many.
+TEST(ActingScene, GoalsThatDoNotFitTheirStepsAreRefused) {
+  wire::ActingScene acting{
+      {{{{{test::small_scene(), 0.01}}}, test::small_scene().fluids}, {}, {}}, {}, {}, {}, {}};
+  Scene& scene = acting.textured.looked.settled.measured.packed.scene;
+  acting.textured.texcoords.resize(scene.meshes.size());
+  acting.textured.materials.resize(scene.bodies.size() + scene.pictures.size());
+  acting.heats.resize(scene.fluids.size());
+  for (Heat& heat : acting.heats) heat.sets_above = heat.melts_above = heat.sets_below = 0.0;
+  acting.temperatures.resize(scene.bodies.size());
+  acting.task.resize(1);
+  acting.goals.push_back({{GoalKind::kTilt, "", 0, -1, 0.0, 1.0, {}}, 0});
+  const auto error = [&] {
+    Bytes content;
+    EXPECT_FALSE(wire::encode(acting, content));
+    Bytes package = stored(content);
+    package[0] = 6;
+    return package_error(package);
+  };
+  EXPECT_EQ(error(), "");
+  acting.goals[0].parts = 1;
+  EXPECT_NE(error().find("goals"), std::string::npos) << "a tilt is made of nothing";
+  acting.goals[0] = {{GoalKind::kNot, "", -1, -1, 0.0, 1.0, {}}, 1};
+  EXPECT_NE(error().find("goals"), std::string::npos) << "its part is missing";
+  acting.goals.push_back({{GoalKind::kTilt, "", 0, -1, 0.0, 1.0, {}}, 0});
+  EXPECT_EQ(error(), "");
+  acting.goals.push_back(acting.goals.back());
+  EXPECT_NE(error().find("goals"), std::string::npos) << "one is left over";
+}
+
+}  // namespace
+}  // namespace slosh
