@@ -181,7 +181,16 @@ inline constexpr double kFluidsViscosity = -1.0;
 /// of Eq 9's mean, and halves the shear.)
 inline constexpr double kFreeSlip = -2.0;
 
-enum class BodyMotion : std::uint8_t { kFixed, kFree };
+/// A driven body goes where Body::keys say, whatever acts on it.
+enum class BodyMotion : std::uint8_t { kFixed, kFree, kDriven };
+constexpr bool moves(BodyMotion motion) {
+  return motion != BodyMotion::kFixed;
+}
+
+struct PoseKey {
+  double time = 0.0;  ///< s, rising
+  Pose pose;          ///< world
+};
 
 /// A rigid body made of particles on its surface (paper, section 4.1), or one particle (section 3).
 struct Body {
@@ -202,6 +211,8 @@ struct Body {
   bool measured = false;     ///< report the fluid's wrench on it even though it is fixed
   Material material;
   std::optional<double> temperature{};  ///< °C, kept by all of it whatever it touches; none: no heat passes
+  std::vector<PoseKey> keys;  ///< of the mesh frame when driven, the first at 0 s; after the last it stands
+  bool repeats = false;       ///< the keys begin again after the last, which is where the first is
 };
 
 /// A mesh that is only looked at.
@@ -227,11 +238,6 @@ struct Region {
   Pose pose;      ///< in the body's mesh frame, else world
 };
 
-struct PoseKey {
-  double time = 0.0;  ///< s, rising
-  Pose pose;          ///< world
-};
-
 /// Where one haptic handle takes hold of one body: a virtual coupling (section 4.4). The order of
 /// Scene::grips is the order of the devices. Ranges are those at which the step was tested.
 struct Grip {
@@ -243,6 +249,31 @@ struct Grip {
   double rotational_stiffness = 10.0;  ///< N·m/rad, 0–10⁴; 0 for a 3-DoF device
   double rotational_damping = 0.2;     ///< N·m·s/rad, 0–10³
   std::vector<PoseKey> hand_motion;    ///< scripted handle pose (glTF animation of the hand); may be empty
+};
+
+enum class JointKind : std::uint8_t { kHinge, kSlider };
+/// Their names in scene files, in the order of the values.
+inline constexpr std::array kJointKindNames{"hinge", "slider"};
+
+/// Joint::lower and upper where nothing stops it.
+inline constexpr double kNoStop = 1e9;
+/// In one scene: all are solved together.
+inline constexpr std::size_t kMaxJoints = 128;
+
+/// Two bodies, of which at least one is free and none a probe, that turn about one axis of each other (hinge)
+/// or slide along it (slider). They do not touch each other. The coordinate is an angle (rad, whole turns
+/// counted) or a way (m) of `body` against `other`, along the axis, from the poses of the scene.
+struct Joint {
+  std::string name;
+  JointKind kind = JointKind::kHinge;
+  int body = -1;             ///< index into Scene::bodies
+  int other = -1;            ///< likewise; −1 = the world
+  Pose pose;                 ///< in the mesh frame of `body`; its y is the axis
+  double lower = -kNoStop;   ///< rad or m, −kNoStop to 0
+  double upper = kNoStop;    ///< rad or m, 0 to kNoStop
+  double damping = 0.0;      ///< N·m·s/rad or N·s/m, 0–10⁶
+  double motor_speed = 0.0;  ///< rad/s or m/s that the motor goes for, ±1000
+  double motor_limit = 0.0;  ///< N·m or N that it has at most, 0–10⁶; 0 = no motor
 };
 
 struct Camera {
@@ -263,6 +294,7 @@ struct Scene {
   std::vector<Body> bodies;
   std::vector<Picture> pictures;
   std::vector<Grip> grips;
+  std::vector<Joint> joints;
   std::vector<Gauge> gauges;  ///< these two change nothing that moves
   std::vector<Region> regions;
   std::vector<TaskStep> task;  ///< may be empty

@@ -45,11 +45,11 @@ bool has_particles(const Scene& scene) {
 void weigh_bodies(const Scene& scene, Plan& plan) {
   const bool fluid = has_particles(scene);
   const double reference = fluid ? fluid_extremes(scene).heaviest : 1000.0;
-  bool any_free_solid = false;
+  bool any_moving_solid = false;
   for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
     const Body& body = scene.bodies[i];
     const bool is_free = body.motion == BodyMotion::kFree;
-    any_free_solid |= is_free && !body.point_probe;
+    any_moving_solid |= body.motion != BodyMotion::kFixed && !body.point_probe;
     const double density =
         body.particle_density > 0.0 ? body.particle_density : reference * (1.0 + kBodyCompression);
     plan.body_density.push_back(density);
@@ -57,7 +57,7 @@ void weigh_bodies(const Scene& scene, Plan& plan) {
     if (fluid && (is_free || body.measured)) plan.wrench_bodies.push_back(static_cast<int>(i));
   }
   // A probe's force is known when the fluid has moved only, and the body's solve would wait for it in vain.
-  plan.waits_for_bodies = fluid && any_free_solid && !any_probe(scene);
+  plan.waits_for_bodies = fluid && any_moving_solid && !any_probe(scene);
 }
 
 SceneFacts facts_of(const Scene& scene, const Plan& plan) {
@@ -69,6 +69,7 @@ SceneFacts facts_of(const Scene& scene, const Plan& plan) {
     f.free_solids += is_free && !body.point_probe;
     f.probes += body.point_probe;
     f.free_bodies += is_free;
+    f.driven += body.motion == BodyMotion::kDriven;
     viscous_body |= body.dynamic_viscosity > 0.0;
     probe_differs |=
         body.point_probe && body.dynamic_viscosity > 0.0 && body.dynamic_viscosity != f.fluids.most_viscous;

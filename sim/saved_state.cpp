@@ -14,9 +14,10 @@ namespace {
 static_assert(std::endian::native == std::endian::little);
 
 constexpr std::uint32_t kMagic = 0x54535753;  // "SWST"
-constexpr std::uint32_t kVersion = 6;
-constexpr std::uint32_t kBeforeBroken = 5;     // without ParticleState::broken, and read as well: none was
-constexpr std::uint32_t kBeforeGone = 4;       // without RigidBody::gone, and read as well: no body was
+constexpr std::uint32_t kVersion = 7;
+constexpr std::uint32_t kBeforeJoints = 6;  // without SavedState::joints, and read as well: there were none
+constexpr std::uint32_t kBeforeBroken = 5;  // without ParticleState::broken, and read as well: none was
+constexpr std::uint32_t kBeforeGone = 4;    // without RigidBody::gone, and read as well: no body was
 constexpr std::uint32_t kBeforeStiffness = 3;  // without grip_stiffness, and read as well: it was the scene's
 constexpr double kLargest = 1.0e9;             // beyond this no position, speed or force of a body is one
 constexpr std::int64_t kMaxOfImpulse = std::int64_t{1} << 62;
@@ -126,6 +127,16 @@ void kept_impulse(S& s, K& k) {
   s.raw(k.second);
   three(s, k.point);
   three(s, k.impulse);
+}
+
+template <class S, class J, class M>
+void joint_state(S& s, J& joint, M& mean) {
+  s.real(joint.position);
+  s.real(joint.motor);
+  s.real(joint.stop);
+  wrench(s, joint.impulse);
+  s.real(mean.motor);
+  wrench(s, mean.reaction);
 }
 
 // Pairs of bodies that there are, in order: the solve looks them up.
@@ -313,6 +324,7 @@ void write_state(const StateFrame& frame, const RunConstants& constants, const S
     for (const double scale : *scales) s.real(scale);
   s.raw(static_cast<std::uint32_t>(state.impulses.size()));
   for (const KeptImpulse& k : state.impulses) kept_impulse(s, k);
+  for (std::size_t j = 0; j < state.joints.size(); ++j) joint_state(s, state.joints[j], state.joint_means[j]);
   s.column(std::span<const std::int64_t>(state.walls));
   s.raw(static_cast<std::uint32_t>(p.size()));
   columns(s, constants.plan, p);
@@ -358,7 +370,7 @@ Result<bool> read_state(std::span<const std::uint8_t> bytes, const StateFrame& f
     if (version > kBeforeGone) s.raw(gone);
     if (gone > (body.free ? 1 : 0)) s.fail("a body in it is neither in the world nor out of it");
     read.gone = gone != 0;
-    if (body.free) body = read;
+    if (!body.is_fixed()) body = read;
   }
   state.wrenches.resize(frame.bodies);
   for (Wrench& w : state.wrenches) wrench(s, w);
@@ -378,6 +390,10 @@ Result<bool> read_state(std::span<const std::uint8_t> bytes, const StateFrame& f
     for (double& scale : *scales) s.real(scale);  // whether it may be is World::restore's to say
   }
   read_impulses(s, frame.bodies, state.impulses);
+  state.joints.resize(frame.joints);
+  state.joint_means.resize(frame.joints);
+  for (std::size_t j = 0; j < frame.joints && version > kBeforeJoints; ++j)
+    joint_state(s, state.joints[j], state.joint_means[j]);
   state.walls = no_impulses(frame.bodies);
   s.column(std::span(state.walls));
   for (const std::int64_t word : state.walls) {

@@ -7,6 +7,7 @@
 
 #include "sim/bodies/contact_memory.h"
 #include "sim/bodies/hands.h"
+#include "sim/bodies/joints.h"
 #include "sim/bodies/rigid_body.h"
 #include "sim/columns.h"
 #include "sim/math/result.h"
@@ -24,10 +25,12 @@ struct StateFrame {
   std::uint64_t bodies = 0;
   std::uint64_t grips = 0;
   std::uint64_t fluids = 0;
-  double spacing = 0.0;     ///< m
-  double time_step = 0.0;   ///< s
-  double stiffness = 0.0;   ///< m²/s²
-  std::uint64_t scene = 0;  ///< fingerprint of masses, grips, gravity, domain, fluids, materials
+  std::uint64_t joints = 0;
+  double spacing = 0.0;    ///< m
+  double time_step = 0.0;  ///< s
+  double stiffness = 0.0;  ///< m²/s²
+  std::uint64_t scene =
+      0;  ///< fingerprint of masses, grips, joints, keys, gravity, domain, fluids, materials
 };
 
 StateFrame state_frame(const Scene& scene, const Plan& plan, const ParticleStart& start);
@@ -44,6 +47,8 @@ struct SavedState {
   std::vector<HandleInput> last_input;  ///< one a grip
   Hands::Stiffness grip_stiffness;      ///< one a grip
   std::vector<KeptImpulse> impulses;    ///< of contacts, pair by pair
+  std::vector<KeptJoint> joints;        ///< one a joint
+  std::vector<JointState> joint_means;  ///< one a joint: motor and reaction
   ImpulseSums walls;                    ///< what bodies have still to be given (walls/clamp_impulse.h)
   BondTable bonds;                      ///< kBonds; else empty
   ParticleState particles;  ///< in the order that the engine has them: sums over neighbours depend on it

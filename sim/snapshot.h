@@ -53,6 +53,13 @@ struct GripState {
   double stiffness = 0.0;
 };
 
+struct JointState {
+  double position = 0.0;  ///< rad or m from the scene's poses on, whole turns counted
+  double speed = 0.0;     ///< rad/s or m/s
+  double motor = 0.0;     ///< N·m or N along the axis by the motor on Joint::body, mean over the last step
+  Wrench reaction;        ///< likewise, by all of the joint but motor and damper, about the joint, world axes
+};
+
 /// Body and grip states: what the 1 kHz loops need, small and often.
 struct BodySnapshot {
   std::uint64_t tick = 0;
@@ -60,6 +67,7 @@ struct BodySnapshot {
   std::uint32_t status = 0;  ///< StatusBit
   std::vector<BodyState> bodies;
   std::vector<GripState> grips;
+  std::vector<JointState> joints;  ///< one a joint of the scene
 };
 
 /// Brings particles from a GPU, on the calling thread, which waits: as Snapshot has them.

@@ -35,6 +35,26 @@ StateFrame state_frame(const Scene& scene, const Plan& plan, const ParticleStart
     vector(body.mass.center_of_mass);
     for (int i = 0; i < 3; ++i) vector(body.mass.inertia[i]);
   }
+  // What is not there adds nothing: states that were saved before there was such a thing still fit.
+  for (const Body& body : scene.bodies) {
+    if (body.motion != BodyMotion::kDriven) continue;
+    print.add(static_cast<std::uint32_t>(body.repeats));
+    for (const PoseKey& key : body.keys) {
+      real(key.time);
+      vector(key.pose.position);
+      for (const double part :
+           {key.pose.orientation.w, key.pose.orientation.x, key.pose.orientation.y, key.pose.orientation.z})
+        real(part);
+    }
+  }
+  for (const Joint& joint : scene.joints) {
+    for (const int number : {static_cast<int>(joint.kind), joint.body, joint.other}) print.add(number);
+    vector(joint.pose.position);
+    for (const double part : {joint.pose.orientation.w, joint.pose.orientation.x, joint.pose.orientation.y,
+                              joint.pose.orientation.z, joint.lower, joint.upper, joint.damping,
+                              joint.motor_speed, joint.motor_limit})
+      real(part);
+  }
   for (const Grip& grip : scene.grips) {
     print.add(static_cast<std::uint32_t>(grip.body));
     vector(grip.pose.position);
@@ -60,8 +80,8 @@ StateFrame state_frame(const Scene& scene, const Plan& plan, const ParticleStart
   for (const std::uint8_t kind : start.particles.kind) print.add(kind);
   return {start.fluid_count,   start.probes.size(), start.fixed.size() + start.moving.size(),
           scene.bodies.size(), scene.grips.size(),  scene.fluids.size(),
-          plan.spacing,        plan.time_step,      plan.stiffness,
-          print.value()};
+          scene.joints.size(), plan.spacing,        plan.time_step,
+          plan.stiffness,      print.value()};
 }
 
 }  // namespace slosh

@@ -157,6 +157,18 @@ void limit_by_diffusion(const Scene& scene, const Plan& plan, const FluidExtreme
   if (plan.has(PassId::kHeat)) limit.lower_to(conduction_step(scene, plan), "explicit conduction of heat");
 }
 
+// m/s between any two keys, of what is `reach` m from the pose's origin.
+double fastest_of(const std::vector<PoseKey>& keys, double reach) {
+  double speed = 0.0;
+  for (std::size_t k = 0; k + 1 < keys.size(); ++k) {
+    const PoseKey &from = keys[k], &to = keys[k + 1];
+    const double way = glm::distance(from.pose.position, to.pose.position) +
+                       reach * glm::length(rotation_between(from.pose.orientation, to.pose.orientation));
+    if (to.time > from.time) speed = std::max(speed, way / (to.time - from.time));
+  }
+  return speed;
+}
+
 }  // namespace
 
 double driven_speed(const Scene& scene) {
@@ -165,15 +177,14 @@ double driven_speed(const Scene& scene) {
   for (const Body& body : scene.bodies) {
     if (body.motion == BodyMotion::kFree) speed = std::max(speed, glm::length(body.twist.linear));
   }
-  for (const Grip& grip : scene.grips) {
-    const double reach = reach_of(scene, grip);
-    for (std::size_t k = 0; k + 1 < grip.hand_motion.size(); ++k) {
-      const PoseKey& from = grip.hand_motion[k];
-      const PoseKey& to = grip.hand_motion[k + 1];
-      const double way = glm::distance(from.pose.position, to.pose.position) +
-                         reach * glm::length(rotation_between(from.pose.orientation, to.pose.orientation));
-      if (to.time > from.time) speed = std::max(speed, way / (to.time - from.time));
-    }
+  for (const Grip& grip : scene.grips)
+    speed = std::max(speed, fastest_of(grip.hand_motion, reach_of(scene, grip)));
+  for (const Body& body : scene.bodies) {
+    if (body.motion != BodyMotion::kDriven || body.mesh < 0) continue;
+    double reach = 0.0;
+    for (const glm::vec3& p : scene.meshes[static_cast<std::size_t>(body.mesh)].positions)
+      reach = std::max(reach, static_cast<double>(glm::length(p)));
+    speed = std::max(speed, fastest_of(body.keys, reach));
   }
   return std::min(speed, kFastestDriven);
 }

@@ -119,6 +119,7 @@ void World::fill(BodySnapshot& out) const {
     out.grips[g].twist = {body.velocity_at(out.grips[g].pose.position), body.angular_velocity};
     out.grips[g].stiffness = impl_->bodies.grip_stiffness().acting[g];
   }
+  impl_->bodies.joints().fill(bodies, out.joints);
 }
 
 void World::fill(Snapshot& out, bool with_shell) const {
@@ -206,6 +207,8 @@ Result<bool> World::save(std::vector<std::uint8_t>& out) const {
   state.last_input = w.bodies.last_inputs();
   state.grip_stiffness = w.bodies.grip_stiffness();
   state.impulses = w.bodies.kept_impulses();
+  state.joints = w.bodies.joints().kept();
+  state.joint_means = w.bodies.joints().means();
   if (!w.engine->save(state.particles, state.walls) || !w.engine->save_bonds(state.bonds))
     return Error{"the world", "cannot be saved: " + w.engine->failure(), "Run again with the CPU backend"};
   write_state(w.frame, w.constants, state, out);
@@ -239,6 +242,7 @@ Result<bool> World::restore(std::span<const std::uint8_t> saved) {
   w.wrenches = std::move(state.wrenches);
   w.bodies.restore(std::move(state.bodies), std::move(state.grips), std::move(state.last_input),
                    std::move(state.grip_stiffness), std::move(state.impulses));
+  w.bodies.restore_joints(std::move(state.joints), std::move(state.joint_means));
   w.engine->restore(state.particles, state.walls);
   if (w.plan().has(PassId::kBonds)) w.engine->restore_bonds(state.bonds);
   std::fill(w.found.begin(), w.found.end(), Wrench{});

@@ -65,7 +65,8 @@ void World::Impl::make_schedules() {
 SubStep World::Impl::sub_step(int index) const {
   const double share = 1.0 / plan().sub_steps;
   const double dt = plan().time_step * share;
-  return {dt, index * dt, share, TakePart::kAll};
+  return {dt, index * dt, share, TakePart::kAll,
+          static_cast<double>(tick) * plan().time_step + (index + 1) * dt};
 }
 
 void World::Impl::begin_step() {
@@ -74,6 +75,7 @@ void World::Impl::begin_step() {
 }
 
 void World::Impl::run(const SubStep& step) {
+  bodies.drive(step);
   if (plan().has_fluid()) engine->begin(bodies.bodies(), step.dt);
   const StepTimes* later = engine->times();
   Stopwatch watch;
@@ -132,7 +134,7 @@ std::span<const RigidBody> World::Impl::bodies_after(const SubStep& step) {
     return bodies.bodies();
   ahead = bodies.bodies();
   for (RigidBody& body : ahead) {
-    if (!body.moves()) continue;
+    if (body.is_fixed() || body.gone) continue;
     body.position += step.dt * body.velocity;
     body.orientation = rotate_by(body.orientation, step.dt * body.angular_velocity);
   }

@@ -143,8 +143,19 @@ void print_scene(const Scene& scene, const Counted& counted) {
     free_bodies += 1;
     mass += body.mass.mass;
   }
+  const auto driven = std::count_if(scene.bodies.begin(), scene.bodies.end(),
+                                    [](const Body& body) { return body.motion == BodyMotion::kDriven; });
   std::printf("ok: %s\n", scene.title.empty() ? scene.name.c_str() : scene.title.c_str());
   std::printf("  bodies      %zu (%zu free, %.3f kg)\n", scene.bodies.size(), free_bodies, mass);
+  if (driven > 0) std::printf("  driven      %td bodies, by their keys\n", driven);
+  for (const Joint& joint : scene.joints) {
+    std::printf(
+        "  joint       %s: %s of %s and %s%s\n", joint.name.c_str(),
+        kJointKindNames[static_cast<std::size_t>(joint.kind)],
+        scene.bodies[static_cast<std::size_t>(joint.body)].name.c_str(),
+        joint.other < 0 ? "the world" : scene.bodies[static_cast<std::size_t>(joint.other)].name.c_str(),
+        joint.motor_limit > 0.0 ? ", with a motor" : "");
+  }
   std::printf("  grips       %zu\n", scene.grips.size());
   for (const Grip& grip : scene.grips) {
     std::printf("    %-10s on %s, %zu keys of hand motion\n", grip.name.c_str(),

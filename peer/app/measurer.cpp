@@ -41,7 +41,7 @@ void note(MeasuredPlace& place, double value, bool first) {
 }  // namespace
 
 bool asks_to_be_measured(const Scene& scene) {
-  return !scene.gauges.empty() || !scene.regions.empty() ||
+  return !scene.gauges.empty() || !scene.regions.empty() || !scene.joints.empty() ||
          std::any_of(scene.bodies.begin(), scene.bodies.end(),
                      [](const Body& body) { return body.measured; });
 }
@@ -59,6 +59,7 @@ Measurer::Measurer(const Scene& scene, const SampledScene& sampled, double inter
   }
   for (const Gauge& gauge : scene.gauges) levels_.push_back({gauge.name, 0.0, 0.0, 0.0, 0.0});
   for (const Region& region : scene.regions) masses_.push_back({region.name, 0.0, 0.0, 0.0, 0.0});
+  motors_.resize(scene.joints.size());
 }
 
 Result<std::unique_ptr<Measurer>> Measurer::create(const Scene& scene, const SampledScene& sampled,
@@ -74,6 +75,12 @@ Result<std::unique_ptr<Measurer>> Measurer::create(const Scene& scene, const Sam
     add_column(gauge.name + "_pressure_pa");
   }
   for (const Region& region : scene.regions) add_column(region.name + "_mass_kg");
+  for (const Joint& joint : scene.joints) {
+    const bool hinge = joint.kind == JointKind::kHinge;
+    add_column(joint.name + (hinge ? "_angle_rad" : "_way_m"));
+    add_column(joint.name + (hinge ? "_speed_rad_s" : "_speed_m_s"));
+    add_column(joint.name + (hinge ? "_motor_nm" : "_motor_n"));
+  }
   Result<std::unique_ptr<LaterTable>> probes = LaterTable::create(folder / "probes.csv", header);
   if (!probes) return probes.error();
   measurer->probe_table_ = std::move(probes.value());
@@ -93,8 +100,9 @@ void Measurer::begin(const World& world, double elapsed) {
 void Measurer::step(const World& world, double elapsed) {
   steps_ += 1;
   all_steps_ += 1;
-  if (!bodies_.empty()) {
+  if (!bodies_.empty() || !motors_.empty()) {
     world.fill(now_);
+    for (std::size_t j = 0; j < motors_.size(); ++j) motors_[j] += now_.joints[j].motor;
     for (Followed& body : bodies_) {
       const Wrench& fluid = now_.bodies[static_cast<std::size_t>(body.index)].fluid;
       body.since_row.force += fluid.force;
@@ -147,6 +155,12 @@ void Measurer::write_rows(const World& world, double elapsed) {
   for (std::size_t i = 0; i < masses_.size(); ++i) {
     row.number(m.masses[i]);
     note(masses_[i], m.masses[i], rows_ == 0);
+  }
+  for (std::size_t j = 0; j < motors_.size(); ++j) {
+    row.number(now_.joints[j].position);
+    row.number(now_.joints[j].speed);
+    row.number(share * motors_[j]);
+    motors_[j] = 0.0;
   }
   probe_table_->add(row.line());
   last_ = m.fluid;

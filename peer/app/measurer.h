@@ -23,12 +23,12 @@ constexpr const char* kBodiesHeader =
 constexpr const char* kProbesHeader =
     "time_s,particles,spilled,lost,in_solids,mass_kg,cx_m,cy_m,cz_m,px_kg_m_s,py_kg_m_s,pz_kg_m_s,kinetic_j";
 
-/// True where the scene has a measured body, a gauge or a region.
+/// True where the scene has a measured body, a gauge, a region or a joint.
 bool asks_to_be_measured(const Scene& scene);
 
-/// Told of every step on the thread that steps. Each wrench is summed from step to step; all else is looked
-/// at once a row. Bodies are those that are measured, and where the scene asks for nothing, those that are
-/// free.
+/// Told of every step on the thread that steps. Each wrench and motor is summed from step to step; all else
+/// is looked at once a row. Bodies are those that are measured, and where the scene asks for nothing, those
+/// that are free.
 class Measurer {
  public:
   /// `interval` > 0, simulated s. Errors: a file cannot be written.
@@ -66,6 +66,7 @@ class Measurer {
   std::vector<Followed> bodies_;
   std::vector<MeasuredPlace> levels_;
   std::vector<MeasuredPlace> masses_;
+  std::vector<double> motors_;  // a joint's, summed over steps since the row before
   Diagnostics last_;
   BodySnapshot now_;
   std::unique_ptr<LaterTable> body_table_;  // null where no body is followed

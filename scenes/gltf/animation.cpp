@@ -125,8 +125,8 @@ Result<std::vector<PoseKey>> read_motion(const Document& document, int node) {
       const std::string where = owner + ": animation '" + animation.name + "': " + channel.target_path;
       const bool moves = channel.target_path == "translation";
       if (!moves && channel.target_path != "rotation") {
-        if (channel.target_path == "scale") continue;  // exporters bake it along; a hand has no size
-        return Error{where, "a hand cannot be animated by this", "Animate location and rotation only"};
+        if (channel.target_path == "scale") continue;  // exporters bake it along; sizes stay
+        return Error{where, "it cannot be animated by this", "Animate location and rotation only"};
       }
       std::optional<Curve>& curve = moves ? translation : rotation;
       if (curve) {
@@ -140,7 +140,7 @@ Result<std::vector<PoseKey>> read_motion(const Document& document, int node) {
   for (int up = document.parent[node]; up >= 0; up = document.parent[up]) {
     if (is_animated(document, up)) {
       return Error{owner, "its parent '" + document.name(up) + "' is animated",
-                   "Animate the hand itself, without parent"};
+                   "Animate the one itself, without parent"};
     }
   }
   const int parent = document.parent[node];

@@ -46,6 +46,12 @@ void read_wall_viscosity(Extras& extras, Body& body) {
   body.dynamic_viscosity = kFreeSlip;
 }
 
+void read_repeat(Extras& extras, Body& body) {
+  body.repeats = extras.flag("repeat", false);
+  if (extras.has("repeat") && body.motion != BodyMotion::kDriven)
+    extras.fail("repeat", "is a driven body's", "Give motion = \"driven\", or leave it out");
+}
+
 void read_mass(Extras& extras, const mesh::VolumeIntegrals& volume, Body& body) {
   const double mass = extras.number("mass_kg", 0.0, gltf::kPositive);
   const double density = extras.number("density_kg_m3", 0.0, Range{0.0, 1e6, true});
@@ -96,8 +102,11 @@ Problem read_body(Reading& reading, int node) {
   if (Problem problem = read_pose(reading, node, body.pose, rest)) return problem;
   Extras extras(reading.document.extras[node], reading.document.owner(node));
   extras.text("slosh", "");
-  const std::string motion = extras.choice("motion", "fixed", {"fixed", "free"});
-  body.motion = motion == "free" ? BodyMotion::kFree : BodyMotion::kFixed;
+  const std::string motion = extras.choice("motion", "fixed", {"fixed", "free", "driven"});
+  body.motion = motion == "free"     ? BodyMotion::kFree
+                : motion == "driven" ? BodyMotion::kDriven
+                                     : BodyMotion::kFixed;
+  read_repeat(extras, body);
   const Problem mesh_problem = read_node_mesh(reading, node, rest, true, body.mesh);
   mesh::VolumeIntegrals volume;
   volume.volume = 1.0;  // so that fields are looked at where there is no solid to weigh
@@ -115,8 +124,16 @@ Problem read_body(Reading& reading, int node) {
   if (extras.has("temperature_c")) body.temperature = extras.number("temperature_c", 20.0, kTemperatures);
   body.twist.linear = extras.vector("velocity_m_s", glm::dvec3(0.0), Range{-1e3, 1e3});
   body.twist.angular = extras.vector("angular_velocity_rad_s", glm::dvec3(0.0), Range{-1e3, 1e3});
+  if (body.motion == BodyMotion::kDriven) {
+    for (const char* key : {"velocity_m_s", "angular_velocity_rad_s"})
+      if (extras.has(key))
+        extras.fail(key, "is given to a driven body", "Leave it out: its keys say how it moves");
+  }
   body.material = read_material(reading, reading.document.model.nodes[node].mesh);
   if (Problem problem = all_of(reading, mesh_problem, extras)) return problem;
+  if (body.motion == BodyMotion::kDriven) {
+    if (Problem problem = read_keys(reading, node, body)) return problem;
+  }
   if (Problem problem = check_place(reading, node, body.mesh, body.pose)) return problem;
   if (reading.scene.bodies.size() >= kMaxBodies) {
     return Error{reading.document.owner(node), "more than " + std::to_string(kMaxBodies) + " bodies",

@@ -58,8 +58,10 @@ Problem place_grip(Reading& reading, int node, Grip& grip) {
   }
   grip.body = reading.body_of_node[up];
   const Body& body = reading.scene.bodies[grip.body];
-  if (body.motion == BodyMotion::kFixed) {
-    return Error{document.owner(node), "holds the body '" + body.name + "', which is fixed",
+  if (body.motion != BodyMotion::kFree) {
+    return Error{document.owner(node),
+                 "holds the body '" + body.name + "', which is " +
+                     (body.motion == BodyMotion::kDriven ? "driven by its keys" : "fixed"),
                  "Give the body motion = \"free\", or take the grip out"};
   }
   Pose world;

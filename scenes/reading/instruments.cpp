@@ -6,17 +6,23 @@ namespace {
 
 constexpr std::size_t kMaxOfEach = 1000;
 
-/// The body that carries a node; −1 when none does.
+/// The node of the body that carries a node; −1 when none does.
 int carrier(const Reading& reading, int node) {
   int up = reading.document.parent[node];
   while (up >= 0 && !reading.body_of_node.contains(up)) up = reading.document.parent[up];
-  return up < 0 ? -1 : reading.body_of_node.at(up);
+  return up;
 }
 
 Problem read_place(Reading& reading, int node, int& body, Pose& pose, glm::dmat3& rest) {
   if (Problem problem = read_pose(reading, node, pose, rest)) return problem;
-  body = carrier(reading, node);
-  if (body >= 0) pose = compose(inverse(reading.scene.bodies[static_cast<std::size_t>(body)].pose), pose);
+  const int up = carrier(reading, node);
+  body = up < 0 ? -1 : reading.body_of_node.at(up);
+  if (up < 0) return std::nullopt;
+  // The file's, which a driven body's first key need not be.
+  Pose carried_by;
+  glm::dmat3 unused;
+  if (Problem problem = read_pose(reading, up, carried_by, unused)) return problem;
+  pose = compose(inverse(carried_by), pose);
   return std::nullopt;
 }
 

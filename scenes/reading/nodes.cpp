@@ -11,7 +11,8 @@
 namespace slosh::reading {
 namespace {
 
-constexpr const char* kKinds[] = {"picture", "body", "fluid", "grip", "hand", "probe", "gauge", "region"};
+constexpr const char* kKinds[] = {"picture", "body",  "fluid",  "grip", "hand",
+                                  "probe",   "gauge", "region", "joint"};
 
 /// In the words of who modelled it: world, z up (glTF's y is up).
 std::string point_text(const glm::dvec3& p) {
@@ -94,9 +95,11 @@ Problem read_kind(Reading& reading, int node) {
     return std::nullopt;
   }
   const std::string kind = extras.choice(
-      "slosh", "", {kKinds[0], kKinds[1], kKinds[2], kKinds[3], kKinds[4], kKinds[5], kKinds[6], kKinds[7]});
-  constexpr NodeKind kOrder[] = {NodeKind::kPicture, NodeKind::kBody,  NodeKind::kFluid, NodeKind::kGrip,
-                                 NodeKind::kHand,    NodeKind::kProbe, NodeKind::kGauge, NodeKind::kRegion};
+      "slosh", "",
+      {kKinds[0], kKinds[1], kKinds[2], kKinds[3], kKinds[4], kKinds[5], kKinds[6], kKinds[7], kKinds[8]});
+  constexpr NodeKind kOrder[] = {NodeKind::kPicture, NodeKind::kBody,   NodeKind::kFluid,
+                                 NodeKind::kGrip,    NodeKind::kHand,   NodeKind::kProbe,
+                                 NodeKind::kGauge,   NodeKind::kRegion, NodeKind::kJoint};
   for (std::size_t i = 0; i < std::size(kKinds); ++i) {
     if (kind == kKinds[i]) reading.kinds[node] = kOrder[i];
   }
@@ -129,13 +132,18 @@ Problem check_animated(Reading& reading, int node) {
   const NodeKind kind = reading.kinds[node];
   if (kind == NodeKind::kNone || kind == NodeKind::kPicture || kind == NodeKind::kHand) return std::nullopt;
   if (!reading.document.animated[static_cast<std::size_t>(node)]) return std::nullopt;
+  const nlohmann::json& extras = reading.document.extras[node];
+  if (kind == NodeKind::kBody && extras.contains("motion") && extras["motion"] == "driven")
+    return std::nullopt;
   for (const tinygltf::Animation& animation : reading.document.model.animations) {
     for (const tinygltf::AnimationChannel& channel : animation.channels) {
       if (channel.target_node != node) continue;
       return Error{
           reading.document.owner(node) + ": animation '" + animation.name + "'",
-          "only a hand can be animated; bodies and fluids move by physics, gauges and regions with a body",
-          "Animate an empty with slosh = \"hand\" and grip = \"<grip's name>\" instead"};
+          "only a hand can be animated, or a body that is driven; other bodies and fluids move by physics, "
+          "gauges, regions and joints with a body",
+          "Give the body motion = \"driven\"; or animate an empty with slosh = \"hand\" and grip = \"<grip's "
+          "name>\" instead"};
     }
   }
   return std::nullopt;

@@ -17,7 +17,7 @@ namespace slosh::reading {
 using Problem = std::optional<Error>;
 
 /// What a node is, by its `slosh` property.
-enum class NodeKind { kNone, kPicture, kBody, kFluid, kGrip, kHand, kProbe, kGauge, kRegion };
+enum class NodeKind { kNone, kPicture, kBody, kFluid, kGrip, kHand, kProbe, kGauge, kRegion, kJoint };
 
 /// A scene under way.
 struct Reading {
@@ -58,7 +58,7 @@ Problem all_of(Reading& reading, Problem first, const gltf::Extras& extras);
 
 /// Sets a node's kind. Errors: unknown `slosh`, a name used twice, a mesh missing.
 Problem read_kind(Reading& reading, int node);
-/// Errors: something animated that is no hand. After all kinds.
+/// Errors: something animated that is neither a hand nor a driven body. After all kinds.
 Problem check_animated(Reading& reading, int node);
 
 /// Scene extras but the domain's defaults: spacing, gravity, fluids declared by name.
@@ -67,11 +67,15 @@ Problem read_scene_fields(Reading& reading);
 Problem read_fluid_volume(Reading& reading, int node);
 Problem read_body(Reading& reading, int node);
 Problem read_probe(Reading& reading, int node);
+/// The animation of a driven body. Errors: there is none, too fast, too far, it does not meet where it
+/// repeats.
+Problem read_keys(Reading& reading, int node, Body& body);
 /// No error: a picture that cannot be shown is left out, and told in Reading::notes.
 Problem read_picture(Reading& reading, int node);
 Problem read_grip(Reading& reading, int node);    ///< after all bodies
 Problem order_grips(Reading& reading);            ///< after all grips: by `device`, the others behind
 Problem read_hand(Reading& reading, int node);    ///< after all grips
+Problem read_joint(Reading& reading, int node);   ///< after all bodies
 Problem read_gauge(Reading& reading, int node);   ///< after all bodies
 Problem read_region(Reading& reading, int node);  ///< after all bodies
 Problem read_task(Reading& reading);              ///< after everything that has a name

@@ -98,7 +98,17 @@ Bounds bounds_of_scene(const Scene& scene) {
     for (const glm::vec3& p : scene.meshes[mesh].positions) take(transform_point(pose, glm::dvec3(p)));
   };
   for (const FluidVolume& volume : scene.fluid_volumes) take_mesh(volume.mesh, volume.pose);
-  for (const Body& body : scene.bodies) take_mesh(body.mesh, body.pose);
+  for (const Body& body : scene.bodies) {
+    take_mesh(body.mesh, body.pose);
+    if (body.keys.empty()) continue;
+    double reach = 0.0;
+    for (const glm::vec3& p : scene.meshes[body.mesh].positions)
+      reach = std::max(reach, static_cast<double>(glm::length(p)));
+    for (const PoseKey& key : body.keys) {
+      take(key.pose.position - reach);
+      take(key.pose.position + reach);
+    }
+  }
   return bounds;
 }
 

@@ -50,15 +50,17 @@ Problem nothing_that_settling_would_undo(Reading& reading) {
 }
 
 /// Whether what is wrong with a node may come from what is wrong with another: what it hangs on, or the grip
-/// that it names, could not be read.
+/// or body that it names, could not be read.
 bool follows_from_another(const Reading& reading, int node) {
   const gltf::Document& document = reading.document;
   for (int up = document.parent[node]; up >= 0; up = document.parent[up])
     if (reading.failed.contains(up)) return true;
   const nlohmann::json& extras = document.extras[node];
-  if (!extras.contains("grip") || !extras["grip"].is_string()) return false;
-  for (const int failed : reading.failed)
-    if (document.name(failed) == extras["grip"].get<std::string>()) return true;
+  for (const char* key : {"grip", "to"}) {
+    if (!extras.contains(key) || !extras[key].is_string()) continue;
+    for (const int failed : reading.failed)
+      if (document.name(failed) == extras[key].get<std::string>()) return true;
+  }
   return false;
 }
 
@@ -144,6 +146,7 @@ std::optional<Scene> read_stages(const gltf::Document& document, std::vector<Err
   stages.nodes(read_grip, NodeKind::kGrip);
   stages.whole(order_grips);
   stages.nodes(read_hand, NodeKind::kHand);
+  stages.nodes(read_joint, NodeKind::kJoint);
   stages.nodes(read_gauge, NodeKind::kGauge);
   stages.nodes(read_region, NodeKind::kRegion);
   stages.whole(read_task, true);

@@ -24,9 +24,10 @@ struct ActiveCoupling {
 /// One body's velocity solve: M v⁺ = rhs with the couplings' stiffness and damping implicit in M, so that no
 /// stiffness can blow the step up. Contacts then act on v⁺ through M⁻¹.
 struct BodySolve {
-  bool moves = false;  ///< false: the body stands still this step, whatever touches it
-  Matrix6 factor{};    ///< Cholesky of M (linear first, angular after)
-  Vector6 velocity{};  ///< v⁺, ω⁺
+  bool moves = false;   ///< false: nothing changes the body's velocity this step
+  bool driven = false;  ///< it does not move by itself but goes by `velocity`; else it stands
+  Matrix6 factor{};     ///< Cholesky of M (linear first, angular after)
+  Vector6 velocity{};   ///< v⁺, ω⁺
   Vector6
       travel{};  ///< by which the pose moves on: v⁺ unless a contact has to put it elsewhere than v⁺ would
 };

@@ -3,34 +3,54 @@
 #include <algorithm>
 
 namespace slosh {
+namespace {
+
+std::vector<RigidBody> make_rigid_bodies(const Scene& scene) {
+  std::vector<RigidBody> bodies;
+  for (const Body& body : scene.bodies) bodies.push_back(make_rigid_body(body));
+  return bodies;
+}
+
+}  // namespace
 
 BodySystem::BodySystem(const Scene& scene, const SampledScene& sampled)
-    : room_(scene, sampled),
+    : bodies_(make_rigid_bodies(scene)),
+      driven_(scene, sampled),
+      joints_(scene, bodies_),
+      room_(scene, sampled),
       finder_(scene, sampled),
       hands_(scene),
       solves_(scene.bodies.size()),
       changes_(scene.bodies.size()),
       memory_(sampled.spacing),
       grips_(scene.grips.size()) {
-  for (const Body& body : scene.bodies) {
-    materials_.push_back({body.friction, body.restitution});
-    bodies_.push_back(make_rigid_body(body));
-  }
+  for (const Body& body : scene.bodies) materials_.push_back({body.friction, body.restitution});
 }
 
 std::uint32_t BodySystem::begin_step(std::span<const HandleInput> handles, double time_step) {
   for (GripState& state : grips_) state.on_hand = Wrench{};
+  joints_.begin_step();
   return hands_.take(handles, time_step);
+}
+
+void BodySystem::drive(const SubStep& step) {
+  if (step.part == TakePart::kAll)
+    driven_.drive(bodies_, step.until, step.dt);
+  else
+    driven_.stand(bodies_);
 }
 
 std::uint32_t BodySystem::solve(const Plan& plan, const BodyForces& forces, const SubStep& step) {
   couplings_ = {};
   if (plan.has(PassId::kCouplings)) couplings_ = hands_.couple(bodies_, step.elapsed);
   const std::uint32_t status = solve_alone(forces, step);
-  if (plan.has(PassId::kContacts)) {
+  const bool joined = plan.has(PassId::kJoints);
+  if (joined) joints_.begin(bodies_, driven_, step.dt, solves_);
+  if (plan.has(PassId::kContacts))
     finder_.find(bodies_, solves_, 0.25 * plan.spacing, step.dt, memory_, contacts_);
-    solve_contacts(contacts_, materials_, bodies_, step.dt, memory_, solves_);
-  }
+  if (joined || plan.has(PassId::kContacts))
+    solve_contacts(contacts_, materials_, bodies_, step.dt, memory_, solves_, joined ? &joints_ : nullptr);
+  if (joined) joints_.finish(bodies_, driven_, step.dt, step.share, solves_);
   report(step);
   for (std::size_t b = 0; b < bodies_.size(); ++b) changes_[b] = twist_change(bodies_[b], solves_[b]);
   return status;
@@ -44,15 +64,20 @@ void BodySystem::predict(const Plan& plan, const BodyForces& forces, const SubSt
   for (std::size_t b = 0; b < bodies_.size(); ++b) {
     const RigidBody& body = bodies_[b];
     const auto held = couplings_of(static_cast<int>(b));
+    if (body.driven && step.part == TakePart::kAll) {
+      out[b] = driven_.as_heavy(body, static_cast<int>(b));
+      continue;
+    }
     out[b] = ViscousBody{};
     out[b].twist = {body.velocity, body.angular_velocity};
-    out[b].moves = part && body.moves() && !(held_only && held.empty());
+    out[b].moves = part && body.moves() && !(held_only && !is_held(static_cast<int>(b)));
     if (!out[b].moves) continue;
     Wrench external = forces.fluid[b];
     external.force += body.mass * forces.gravity;
     const Matrix6* drag = forces.drags.empty() ? nullptr : &forces.drags[b];
     assemble_body(body, external, held, step.dt, out[b].inertia, out[b].momentum, drag);
   }
+  if (part && plan.has(PassId::kJoints)) joints_.predict(bodies_, out);
   if (!plan.has(PassId::kContacts)) return;
   for (const KeptImpulse& kept : memory_.kept()) {
     const glm::dvec3 place = kept.place(bodies_);
@@ -69,14 +94,14 @@ void BodySystem::move(const SubStep& step) {
   for (std::size_t b = 0; b < bodies_.size(); ++b) {
     if (solves_[b].moves) advance_body(bodies_[b], solves_[b], step.dt);
   }
+  driven_.move(bodies_);
 }
 
 std::uint32_t BodySystem::part_with_lost(const glm::dvec3& gravity) {
   std::uint32_t status = 0;
   for (std::size_t b = 0; b < bodies_.size(); ++b) {
     RigidBody& body = bodies_[b];
-    if (!body.moves() || !room_.lost(body.position, gravity) || !couplings_of(static_cast<int>(b)).empty())
-      continue;
+    if (!body.moves() || !room_.lost(body.position, gravity) || is_held(static_cast<int>(b))) continue;
     body.gone = true;
     body.velocity = body.angular_momentum = body.angular_velocity = glm::dvec3(0.0);
     status |= kStatusBodyGone;
@@ -91,6 +116,14 @@ std::span<const ActiveCoupling> BodySystem::couplings_of(int body) const {
   return {first, last};
 }
 
+// By a hand, itself or by joints.
+bool BodySystem::is_held(int body) const {
+  const int group = joints_.group_of(body);
+  if (group < 0) return !couplings_of(body).empty();
+  return std::any_of(couplings_.begin(), couplings_.end(),
+                     [&](const ActiveCoupling& c) { return joints_.group_of(c.body) == group; });
+}
+
 // A body that went non-finite is put back to rest where it last was, and the step goes on.
 std::uint32_t BodySystem::solve_alone(const BodyForces& forces, const SubStep& step) {
   const bool held_only = step.part == TakePart::kHeld;
@@ -98,8 +131,10 @@ std::uint32_t BodySystem::solve_alone(const BodyForces& forces, const SubStep& s
   for (std::size_t b = 0; b < bodies_.size(); ++b) {
     RigidBody& body = bodies_[b];
     const auto held = couplings_of(static_cast<int>(b));
-    if (!body.moves() || (held_only && held.empty())) {
+    if (!body.moves() || (held_only && !is_held(static_cast<int>(b)))) {
       solves_[b] = BodySolve{};
+      solves_[b].driven = body.driven;
+      if (body.driven) solves_[b].velocity = solves_[b].travel = body_solve::twist_of(body);
       continue;
     }
     Wrench external = forces.fluid[b];
@@ -124,11 +159,16 @@ void BodySystem::report(const SubStep& step) {
 }
 
 void BodySystem::damp_held(double keep) {
-  for (const ActiveCoupling& c : couplings_) {
-    RigidBody& body = bodies_[c.body];
+  const auto damp = [&](RigidBody& body) {
     body.velocity *= keep;
     body.angular_momentum *= keep;
     body.angular_velocity *= keep;
+  };
+  for (const ActiveCoupling& c : couplings_) damp(bodies_[c.body]);
+  if (joints_.empty()) return;
+  for (std::size_t b = 0; b < bodies_.size(); ++b) {
+    const int body = static_cast<int>(b);
+    if (bodies_[b].moves() && couplings_of(body).empty() && is_held(body)) damp(bodies_[b]);
   }
 }
 

@@ -6,7 +6,9 @@
 
 #include "sim/bodies/body_room.h"
 #include "sim/bodies/contacts.h"
+#include "sim/bodies/driven_bodies.h"
 #include "sim/bodies/hands.h"
+#include "sim/bodies/joints.h"
 #include "sim/passes/implicit_viscosity/implicit.h"
 #include "sim/plan.h"
 #include "sim/snapshot.h"
@@ -30,6 +32,7 @@ struct SubStep {
   double elapsed = 0.0;  ///< s since the step began
   double share = 1.0;    ///< dt over the step's length
   TakePart part = TakePart::kAll;
+  double until = 0.0;  ///< s of the world's time at its end
 };
 
 class BodySystem {
@@ -40,11 +43,13 @@ class BodySystem {
   /// StatusBits.
   /// `time_step` in s.
   std::uint32_t begin_step(std::span<const HandleInput> handles, double time_step);
-  /// The velocities that the bodies end the sub-step with, by couplings and contacts as far as the plan has
-  /// them. Returns StatusBits.
+  /// Gives driven bodies the twist of the sub-step, before all else of it; while a scene settles none.
+  void drive(const SubStep& step);
+  /// The velocities that the bodies end the sub-step with, by couplings, joints and contacts as far as the
+  /// plan has them. Returns StatusBits.
   std::uint32_t solve(const Plan& plan, const BodyForces& forces, const SubStep& step);
   /// Every body as implicit viscosity needs it, one a body: as solve() will find it under the same forces,
-  /// with what contacts gave in the last sub-step for what they will give now.
+  /// with what contacts and joints gave in the last sub-step for what they will give now.
   void predict(const Plan& plan, const BodyForces& forces, const SubStep& step, std::span<ViscousBody> out);
   /// By how much they differ from those that it began with, one a body.
   std::span<const Twist> changes() const { return changes_; }
@@ -54,7 +59,7 @@ class BodySystem {
   /// on. After move(). Returns StatusBits.
   std::uint32_t part_with_lost(const glm::dvec3& gravity);
 
-  /// Multiplies the velocities of the bodies that a hand holds by `keep`.
+  /// Multiplies the velocities of the bodies that a hand holds, itself or by joints, by `keep`.
   void damp_held(double keep);
 
   const std::vector<RigidBody>& bodies() const { return bodies_; }
@@ -64,16 +69,23 @@ class BodySystem {
   const Hands::Stiffness& grip_stiffness() const { return hands_.stiffness(); }
   void want_grip_stiffness(std::size_t grip, double scale) { hands_.want_stiffness(grip, scale); }
   const std::vector<KeptImpulse>& kept_impulses() const { return memory_.kept(); }
+  const JointSystem& joints() const { return joints_; }
+  void restore_joints(std::vector<KeptJoint> kept, std::vector<JointState> means) {
+    joints_.restore(std::move(kept), std::move(means));
+  }
   void restore(std::vector<RigidBody> bodies, std::vector<GripState> grips, std::vector<HandleInput> inputs,
                Hands::Stiffness stiffness, std::vector<KeptImpulse> impulses);
 
  private:
   std::span<const ActiveCoupling> couplings_of(int body) const;
+  bool is_held(int body) const;
   std::uint32_t solve_alone(const BodyForces& forces, const SubStep& step);
   void report(const SubStep& step);
 
   std::vector<ContactMaterial> materials_;
   std::vector<RigidBody> bodies_;
+  DrivenBodies driven_;
+  JointSystem joints_;
   BodyRoom room_;
   ContactFinder finder_;
   Hands hands_;

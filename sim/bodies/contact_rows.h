@@ -34,10 +34,10 @@ struct Row {
 SLOSH_HD inline Row make_row(const RigidBody& body, const BodySolve& solve, const glm::dvec3& arm,
                              const glm::dvec3& direction) {
   Row row;
-  if (!solve.moves) return row;
+  if (!solve.moves && !solve.driven) return row;
   const glm::dvec3 moment = body.point ? glm::dvec3(0.0) : glm::cross(arm, direction);
   row.force = {direction.x, direction.y, direction.z, moment.x, moment.y, moment.z};
-  row.response = cholesky_solve(solve.factor, row.force);
+  if (solve.moves) row.response = cholesky_solve(solve.factor, row.force);
   return row;
 }
 

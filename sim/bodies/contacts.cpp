@@ -88,6 +88,7 @@ void add_corners(const TriangleMesh& mesh, std::vector<glm::vec3>& points, std::
 }  // namespace
 
 ContactFinder::ContactFinder(const Scene& scene, const SampledScene& sampled) : spacing_(sampled.spacing) {
+  for (const Joint& joint : scene.joints) joined_.emplace(std::minmax(joint.body, joint.other));
   shapes_.resize(scene.bodies.size());
   for (std::size_t i = 0; i < shapes_.size(); ++i) {
     Shape& shape = shapes_[i];
@@ -143,14 +144,14 @@ void ContactFinder::cluster(const std::vector<glm::vec3>& points, std::span<std:
 }
 
 glm::dvec3 ContactFinder::Motion::velocity_at(int body, const glm::dvec3& where) const {
-  if (!solves[body].moves) return glm::dvec3(0.0);
+  if (!solves[body].moves && !solves[body].driven) return glm::dvec3(0.0);
   const glm::dvec3 turning =
       bodies[body].point ? glm::dvec3(0.0) : body_solve::angular_part(solves[body].velocity);
   return body_solve::linear_part(solves[body].velocity) + glm::cross(turning, where - bodies[body].position);
 }
 
 double ContactFinder::Motion::fastest(int body, double radius) const {
-  if (!solves[body].moves) return 0.0;
+  if (!solves[body].moves && !solves[body].driven) return 0.0;
   const double arm = radius + glm::length(bodies[body].local_center);
   return glm::length(body_solve::linear_part(solves[body].velocity)) +
          arm * glm::length(body_solve::angular_part(solves[body].velocity));
@@ -371,6 +372,7 @@ void ContactFinder::find(const std::vector<RigidBody>& bodies, const std::vector
     for (int j = i + 1; j < count; ++j) {
       if (!bodies[i].free && !bodies[j].free) continue;
       if (bodies[i].gone || bodies[j].gone) continue;
+      if (!joined_.empty() && joined_.contains({i, j})) continue;
       if (shapes_[i].points.empty() || shapes_[j].points.empty()) continue;
       const double reach =
           margin + dt * (motion.fastest(i, shapes_[i].radius) + motion.fastest(j, shapes_[j].radius));

@@ -3,7 +3,9 @@
 #pragma once
 
 #include <cstdint>
+#include <set>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "scenes/scene.h"
@@ -12,8 +14,10 @@
 
 namespace slosh {
 
-/// Finds contacts between bodies of which at least one is free and none gone. A pair gets at most
-/// kMaxContactsPerPair, spread over the touching patch. Deterministic.
+class JointSystem;
+
+/// Finds contacts between bodies of which at least one is free, none gone, and that no joint connects. A pair
+/// gets at most kMaxContactsPerPair, spread over the touching patch. Deterministic.
 class ContactFinder {
  public:
   static constexpr int kMaxContactsPerPair = 16;
@@ -58,6 +62,7 @@ class ContactFinder {
                       std::vector<Cluster>& out);
 
   std::vector<Shape> shapes_;
+  std::set<std::pair<int, int>> joined_;  // the lower index first
   double spacing_;
   std::vector<std::uint64_t> near_;  // a bit for each point that may be near the other body
   std::vector<Contact> found_;
@@ -68,8 +73,10 @@ class ContactFinder {
 /// Changes the solved velocities so that no contact closes faster than its gap allows, with Coulomb friction
 /// and restitution. `materials` and `solves` have one entry a body; fixed bodies' are not used. Overlap is
 /// undone at a bounded rate. Begins with what `memory` has of the last step, and leaves what this one gave.
+/// `joints`, where there are any: after their begin(); their motors and stops are solved too, and every
+/// impulse acts with all joints kept.
 void solve_contacts(const std::vector<Contact>& contacts, const std::vector<ContactMaterial>& materials,
                     const std::vector<RigidBody>& bodies, double time_step, ContactMemory& memory,
-                    std::vector<BodySolve>& solves);
+                    std::vector<BodySolve>& solves, JointSystem* joints = nullptr);
 
 }  // namespace slosh

@@ -5,6 +5,7 @@ namespace slosh {
 RigidBody make_rigid_body(const Body& source) {
   RigidBody body;
   body.free = source.motion == BodyMotion::kFree;
+  body.driven = source.motion == BodyMotion::kDriven;
   body.point = source.point_probe;
   body.local_center = body.free ? source.mass.center_of_mass : glm::dvec3(0.0);
   body.orientation = source.pose.orientation;

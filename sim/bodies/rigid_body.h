@@ -10,7 +10,8 @@ namespace slosh {
 /// exactly.
 struct RigidBody {
   bool free = false;
-  bool point = false;  ///< translation only (a probe)
+  bool point = false;   ///< translation only (a probe)
+  bool driven = false;  ///< it goes by its keys (driven_bodies.h), and nothing acts on it
   bool gone = false;  ///< it left for good (body_room.h): it stands where it was then, and nothing touches or
                       ///< holds it
   double mass = 0.0;  ///< kg
@@ -20,11 +21,13 @@ struct RigidBody {
 
   glm::dvec3 position{0.0};                    ///< of the centre of mass, world
   glm::dquat orientation{1.0, 0.0, 0.0, 0.0};  ///< mesh axes to world
-  glm::dvec3 velocity{0.0};                    ///< m/s, half a step behind position (leap-frog)
-  glm::dvec3 angular_momentum{0.0};            ///< kg·m²/s, world
-  glm::dvec3 angular_velocity{0.0};            ///< rad/s, world, from the momentum
+  glm::dvec3 velocity{
+      0.0};  ///< m/s, half a step behind position (leap-frog); of a driven one the next half step's
+  glm::dvec3 angular_momentum{0.0};  ///< kg·m²/s, world
+  glm::dvec3 angular_velocity{0.0};  ///< rad/s, world, from the momentum
 
   bool moves() const { return free && !gone; }
+  bool is_fixed() const { return !free && !driven; }
   SLOSH_HD Pose mesh_pose() const { return {position - orientation * local_center, orientation}; }
   // Out of line: what the compiler fuses in it must not depend on its callers, or a run's hash would.
   SLOSH_HD __attribute__((noinline)) glm::dmat3 world_inertia() const {

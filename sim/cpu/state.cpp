@@ -21,7 +21,7 @@ CpuState::CpuState(const RunConstants& constants, const ParticleStart& start,
   static_cast<RunConstants&>(context) = constants;
   for (const int b : constants.plan.wrench_bodies) wanted[static_cast<std::size_t>(b)] = 1;
   fixed_measured = std::any_of(constants.plan.wrench_bodies.begin(), constants.plan.wrench_bodies.end(),
-                               [&](int b) { return !bodies[static_cast<std::size_t>(b)].free; });
+                               [&](int b) { return bodies[static_cast<std::size_t>(b)].is_fixed(); });
   fluid.provide(context.plan, start.particles.kind.size());
   scratch.provide(context.plan, start.particles.kind.size());
   if (context.plan.has(PassId::kBonds)) bonds.table.resize(start.particles.kind.size());

@@ -280,7 +280,7 @@ class CudaEngine final : public ParticleEngine {
     for (std::size_t i = 0; i < s_.sums.bodies().size(); ++i) {
       const std::uint32_t b = s_.sums.bodies()[i];
       // Fixed ones are measured when all of the pressure is known.
-      if (s_.constants.plan.has(PassId::kPressureSolve) && !s_.prepared[b].free) continue;
+      if (s_.constants.plan.has(PassId::kPressureSolve) && s_.prepared[b].is_fixed()) continue;
       wrenches[b] = wrenches[b] + s_.report.got_wrench(i).wrench();
     }
     if (s_.clamps.size() > 0) {

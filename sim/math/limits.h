@@ -14,6 +14,10 @@ constexpr double kHandleReach = 5.0;           ///< m beyond the scene's domain
 constexpr double kHandleSpeed = 20.0;          ///< m/s
 constexpr double kHandleAngularSpeed = 100.0;  ///< rad/s
 
+/// Of driven bodies between two keys: m/s of the mesh frame's origin, rad/s.
+constexpr double kDrivenSpeed = 20.0;
+constexpr double kDrivenAngularSpeed = 100.0;
+
 /// m from the origin: what is farther is a broken device, no hand.
 constexpr double kFarthestHandle = 2.0e3;
 static_assert(

@@ -24,6 +24,7 @@
   OWN(kImplicitViscosity, implicit_viscosity)           \
   OWN(kPressureSolve, pressure_solve)                   \
   FUSED(kCouplings, couplings, kSolveBodies)            \
+  FUSED(kJoints, joints, kSolveBodies)                  \
   FUSED(kContacts, contacts, kSolveBodies)              \
   WORLD(kSolveBodies, solve_bodies)                     \
   OWN(kBodyDrag, body_drag)                             \

@@ -22,6 +22,7 @@ struct SceneFacts {
   int free_solids = 0;    ///< free ones of them
   int probes = 0;         ///< point probes
   int free_bodies = 0;    ///< probes among them
+  int driven = 0;         ///< driven bodies, not among the free ones
   bool fluid = false;     ///< there are particles
   bool viscous = false;   ///< a fluid or a body has a viscosity
   bool one = false;       ///< all have the same

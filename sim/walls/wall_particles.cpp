@@ -295,10 +295,10 @@ std::vector<DraggingLayer> dragging_layers(const Scene& scene, const SampledScen
   std::vector<DraggingLayer> layers(scene.bodies.size());
   for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
     const Body& body = scene.bodies[b];
-    if (body.motion == motion && !body.point_probe)
+    if (moves(body.motion) == moves(motion) && !body.point_probe)
       layers[b] = {sampled.surfaces[b].positions, sampled.surfaces[b].normals};
   }
-  if (motion == BodyMotion::kFree) return layers;
+  if (moves(motion)) return layers;
   const auto [solids, body_of] = fixed_solids(scene, sampled);
   const std::vector<std::vector<std::uint32_t>> exposed =
       exposed_samples(solids, static_cast<float>(plan.spacing));
@@ -347,7 +347,7 @@ std::vector<SurfaceParticle> surface_particles(const Scene& scene, const Sampled
   if (apart) dragging = dragging_layers(scene, sampled, plan, motion);
   for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
     const Body& body = scene.bodies[b];
-    if (body.motion != motion || body.point_probe) continue;
+    if (moves(body.motion) != moves(motion) || body.point_probe) continue;
     std::vector<LayerParticle> pressing;
     std::vector<float> pressures;
     if (motion == BodyMotion::kFixed && !joined.layers[b].empty()) {

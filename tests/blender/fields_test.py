@@ -38,7 +38,7 @@ def most_in(words):
     return number(found.group(1)) if found else None
 
 
-for kind, title in (("body", "body"), ("fluid", "fluid"), ("grip", "grip"), ("scene", "the scene's own properties")):
+for kind, title in (("body", "body"), ("fluid", "fluid"), ("grip", "grip"), ("joint", "joint"), ("scene", "the scene's own properties")):
     said, known = table(title), {field[0]: field for field in FIELDS[kind]}
     if kind == "scene":
         said.pop("fluids")  # a table of tables: by hand

@@ -5,18 +5,19 @@ The ranges are slosh's own (scenes/FIELDS.md has the tables); a test holds both 
 
 # What an object may be: name, what it becomes, the types of object that can be it.
 KINDS = [
-    ("body", "A rigid body, fixed or carried: a closed mesh", ("MESH",)),
+    ("body", "A rigid body, fixed, carried or animated: a closed mesh", ("MESH",)),
     ("fluid", "A volume that starts full of fluid: a closed mesh", ("MESH",)),
     ("grip", "Where a device takes hold: an empty, child of a body or probe", ("EMPTY",)),
     ("hand", "The scripted handle of one grip: an animated empty", ("EMPTY",)),
     ("probe", "A point that feels fluid: an empty, or a mesh for its looks", ("EMPTY", "MESH")),
+    ("joint", "A hinge or a slider: an empty, child of one of its two bodies", ("EMPTY",)),
     ("gauge", "A point at which level and pressure are read: an empty", ("EMPTY",)),
     ("region", "A space in which the fluid is weighed: a closed mesh", ("MESH",)),
     ("picture", "Only looked at: a mesh", ("MESH",)),
 ]
 
 # Fields: key, unit, first value, least, most, what it is. A list of words is a choice, a tuple a vector; "name" names a
-# grip. Least and most are slosh's own, None where there is none; a 0 that slosh refuses is 1e-6 here.
+# grip, "body" a body. Least and most are slosh's own, None where there is none; a 0 that slosh refuses is 1e-6 here.
 COMMON = [
     ("particle_density_kg_m3", "kg/m3", 0.0, 0.0, 1e6, "Of its wall particles; 0: the plan chooses"),
     ("friction", "", 0.4, 0.0, 10.0, "Against other bodies"),
@@ -28,7 +29,9 @@ MOVES = [
 ]
 FIELDS = {
     "body": [
-        ("motion", "", ["fixed", "free"], None, None, "fixed: it stands; free: it falls, or is carried"),
+        ("motion", "", ["fixed", "free", "driven"], None, None,
+         "fixed: it stands; free: it falls, or is carried; driven: it goes by its keys"),
+        ("repeat", "", False, None, None, "A driven body's keys begin again after the last"),
         ("mass_kg", "kg", 0.5, 1e-6, None, "Of a free body: this or its density"),
         ("density_kg_m3", "kg/m3", 1000.0, 1e-6, 1e6, "Of a free body, in place of its mass"),
         ("viscosity_pa_s", "Pa s", 1.0, 0.0, 1e7, "Of its wall; without it the fluid's own: the fluid sticks"),
@@ -72,6 +75,20 @@ FIELDS = {
         ("device", "", 0, 0, 1000, "Order of the devices, each number once"),
     ],
     "hand": [("grip", "", "name", None, None, "The grip that it holds; there at the first frame")],
+    "joint": [
+        ("kind", "", ["hinge", "slider"], None, None, "It turns about, or slides along, the empty's z"),
+        ("to", "", "body", None, None, "The other body's name; without it the world"),
+        ("min_deg", "degrees", 0.0, -36000.0, 0.0, "A hinge's stop, from where it is in the file"),
+        ("max_deg", "degrees", 0.0, 0.0, 36000.0, "A hinge's other stop"),
+        ("min_m", "m", 0.0, -1000.0, 0.0, "A slider's stop, from where it is in the file"),
+        ("max_m", "m", 0.0, 0.0, 1000.0, "A slider's other stop"),
+        ("damping_nm_s_rad", "N m s/rad", 0.0, 0.0, 1e6, "Of a hinge"),
+        ("damping_n_s_m", "N s/m", 0.0, 0.0, 1e6, "Of a slider"),
+        ("motor_nm", "N m", 1.0, 0.0, 1e6, "The most that a hinge's motor has"),
+        ("motor_rad_s", "rad/s", 0.0, -1000.0, 1000.0, "That a hinge's motor goes for; 0: a brake"),
+        ("motor_n", "N", 1.0, 0.0, 1e6, "The most that a slider's motor has"),
+        ("motor_m_s", "m/s", 0.0, -1000.0, 1000.0, "That a slider's motor goes for; 0: a brake"),
+    ],
     "probe": [
         ("mass_kg", "kg", 0.05, 1e-6, None, ""),
         ("viscosity_pa_s", "Pa s", 0.0, 0.0, 1e7, "0: the fluid's"),
@@ -100,7 +117,7 @@ FIELDS = {
     ],
 }
 # Without these nothing plays: they are there as soon as the object is of that kind.
-FIRST = {"body": ("motion",), "fluid": ("fluid", "viscosity_pa_s"), "hand": ("grip",)}
+FIRST = {"body": ("motion",), "fluid": ("fluid", "viscosity_pa_s"), "hand": ("grip",), "joint": ("kind",)}
 LEAST_RATE = 55  # frames a second: hands keyed more coarsely hum
 
 

@@ -11,7 +11,7 @@ def kind_of(owner):
 def give(owner, key):
     """The field with its first value, its unit, range and words in Blender's own tooltip."""
     _, unit, first, least, most, words = fields_of(kind_of(owner))[key]
-    value = first[0] if isinstance(first, list) else "" if first == "name" else first
+    value = first[0] if isinstance(first, list) else "" if first in ("name", "body") else first
     owner[key] = value
     about = {"description": words + (f" [{unit}]" if unit else "")}
     if least is not None:
@@ -144,7 +144,8 @@ def choices(context, field):
     """What a field may be, where it is one of a few."""
     if isinstance(field[2], list):
         return field[2]
-    return [thing.name for thing in context.scene.objects if thing.get("slosh") == "grip"] if field[2] == "name" else []
+    named = {"name": "grip", "body": "body"}.get(field[2]) if isinstance(field[2], str) else None
+    return [thing.name for thing in context.scene.objects if thing.get("slosh") == named] if named else []
 
 
 class FieldMenu:

@@ -50,6 +50,8 @@ class ObjectPanel(SloshPanel, bpy.types.Panel):
         holder = thing.parent
         if thing.get("slosh") == "grip" and (holder is None or holder.get("slosh") not in ("body", "probe")):
             self.layout.label(text="Make it the child of a body (Ctrl P)", icon="ERROR")
+        if thing.get("slosh") == "joint" and (holder is None or holder.get("slosh") != "body"):
+            self.layout.label(text="Make it the child of one of its bodies (Ctrl P)", icon="ERROR")
 
 
 class ScenePanel(SloshPanel, bpy.types.Panel):

@@ -82,7 +82,7 @@ void ViscousSolver::find_blocks(const Work& work) {
 // The drag on fixed bodies that are measured, by the velocities that the iterations found.
 void ViscousSolver::add_fixed(const Work& work, std::span<Wrench> wrenches) {
   const BoundaryParticles& fixed = work.sides.fixed;
-  const auto asked = [&](int body) { return work.measured[body] && !work.sides.bodies[body].free; };
+  const auto asked = [&](int body) { return work.measured[body] && work.sides.bodies[body].is_fixed(); };
   bool any = false;
   for (std::size_t b = 0; b < work.bodies.size(); ++b) any |= asked(static_cast<int>(b));
   if (!any) return;

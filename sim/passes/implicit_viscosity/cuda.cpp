@@ -118,7 +118,7 @@ void ViscousSolver::read(std::span<const RigidBody> before, std::span<Wrench> wr
   }
   for (std::size_t i = 0; i < sums_->bodies().size(); ++i) {
     const std::uint32_t b = sums_->bodies()[i];
-    if (before[b].free) continue;
+    if (!before[b].is_fixed()) continue;
     wrenches[b] = wrenches[b] + read_at<DeviceWrench>(got_, fixed_at_, i).wrench();
   }
 }

@@ -11,6 +11,9 @@ constinit const PassEntry move_bodies_pass{
     .reads = "velocities",
     .writes = "poses, angular momentum",
     .need = [](const SceneFacts& f) -> PassNeed {
+      if (f.driven > 0)
+        return needed(
+            format("leap-frog for %d free bodies, and %d go by their keys", f.free_bodies, f.driven));
       return f.free_bodies > 0 ? needed(format("leap-frog for %d free bodies", f.free_bodies))
                                : left_out("every body is fixed");
     },

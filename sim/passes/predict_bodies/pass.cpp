@@ -7,7 +7,7 @@ namespace slosh::passes {
 extern const PassEntry predict_bodies_pass;
 constinit const PassEntry predict_bodies_pass{
     .words = "predict bodies",
-    .reads = "wrenches, handles, the last contact impulses",
+    .reads = "wrenches, handles, the last impulses of contacts and joints",
     .writes = "each free body's 6×6 system, for a solve together with the fluid",
     .need = [](const SceneFacts& f) -> PassNeed {
       return f.implicit || f.plan.model == ParticleModel::kIncompressible

@@ -132,7 +132,7 @@ void PressureSolver::read(std::span<const RigidBody> before, const std::vector<P
   }
   for (std::size_t i = 0; i < sums_->bodies().size(); ++i) {
     const std::uint32_t b = sums_->bodies()[i];
-    if (!before[b].free) wrenches[b] = wrenches[b] + read_at<DeviceWrench>(got_, fixed_at_, i).wrench();
+    if (before[b].is_fixed()) wrenches[b] = wrenches[b] + read_at<DeviceWrench>(got_, fixed_at_, i).wrench();
   }
   for (std::size_t i = 0; i < probes.size(); ++i) {
     const float4 f = read_at<float4>(got_, probes_at_, i);

@@ -9,11 +9,12 @@ extern const PassEntry solve_bodies_pass;
 constinit const PassEntry solve_bodies_pass{
     .words = "solve bodies",
     .reads = "wrenches, drag rates, gravity",
-    .writes = "velocity of each free body (Eq 13), with its couplings and contacts",
+    .writes = "velocity of each free body (Eq 13), with its couplings, joints and contacts",
     .need = [](const SceneFacts& f) -> PassNeed {
       if (f.free_bodies > 0 || !f.scene.grips.empty())
-        return needed(format("Eq 13 for %d free bodies, with their couplings and contacts", f.free_bodies));
-      return left_out("every body is fixed");
+        return needed(format("Eq 13 for %d free bodies, with their couplings%s and contacts", f.free_bodies,
+                             f.scene.joints.empty() ? "" : ", joints"));
+      return left_out(f.driven > 0 ? "no body is free" : "every body is fixed");
     },
     .run =
         [](World::Impl& w, const SubStep& step) {

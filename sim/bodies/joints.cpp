@@ -1,0 +1,155 @@
+#include "sim/bodies/joints.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <numeric>
+
+namespace slosh {
+namespace {
+
+// A frame in the world as a body's side of a joint.
+JointSide side_of(int body, const Pose& frame, const std::vector<RigidBody>& bodies) {
+  if (body < 0) return {-1, frame.position, frame.orientation};
+  const RigidBody& b = bodies[static_cast<std::size_t>(body)];
+  const glm::dquat into = glm::conjugate(b.orientation);
+  return {body, into * (frame.position - b.position), into * frame.orientation};
+}
+
+Pose pose_of(const JointSide& side, const std::vector<RigidBody>& bodies) {
+  if (side.body < 0) return {side.point, side.turn};
+  const RigidBody& b = bodies[static_cast<std::size_t>(side.body)];
+  return {b.position + b.orientation * side.point, b.orientation * side.turn};
+}
+
+glm::dvec3 velocity_of(int body, const std::vector<RigidBody>& bodies, const glm::dvec3& where) {
+  return body < 0 ? glm::dvec3(0.0) : bodies[static_cast<std::size_t>(body)].velocity_at(where);
+}
+glm::dvec3 turning_of(int body, const std::vector<RigidBody>& bodies) {
+  return body < 0 ? glm::dvec3(0.0) : bodies[static_cast<std::size_t>(body)].angular_velocity;
+}
+
+bool is_free(int body, const std::vector<RigidBody>& bodies) {
+  return body >= 0 && bodies[static_cast<std::size_t>(body)].free;
+}
+
+}  // namespace
+
+JointSystem::JointSystem(const Scene& scene, const std::vector<RigidBody>& bodies)
+    : kept_(scene.joints.size()), means_(scene.joints.size()) {
+  if (scene.joints.empty()) return;
+  groups_.resize(bodies.size());
+  std::iota(groups_.begin(), groups_.end(), 0);
+  std::vector<char> joined(bodies.size(), 0);
+  for (const Joint& source : scene.joints) {
+    const Pose frame = compose(bodies[static_cast<std::size_t>(source.body)].mesh_pose(), source.pose);
+    Linked joint{source.kind,
+                 side_of(source.body, frame, bodies),
+                 side_of(source.other, frame, bodies),
+                 source.lower,
+                 source.upper,
+                 source.damping,
+                 source.motor_speed,
+                 source.motor_limit,
+                 {}};
+    const auto shared = [&](const Linked& other) {
+      for (const int mine : {joint.first.body, joint.second.body}) {
+        if (is_free(mine, bodies) && (mine == other.first.body || mine == other.second.body)) return true;
+      }
+      return false;
+    };
+    for (std::size_t i = 0; i < joints_.size(); ++i)
+      if (shared(joints_[i])) joint.neighbours.push_back(static_cast<int>(i));
+    joint.neighbours.push_back(static_cast<int>(joints_.size()));
+    joints_.push_back(std::move(joint));
+    for (const int b : {source.body, source.other})
+      if (is_free(b, bodies)) joined[static_cast<std::size_t>(b)] = 1;
+    if (!is_free(source.body, bodies) || !is_free(source.other, bodies)) continue;
+    const int from = groups_[static_cast<std::size_t>(source.body)];
+    const int to = groups_[static_cast<std::size_t>(source.other)];
+    std::replace(groups_.begin(), groups_.end(), from, to);
+  }
+  for (std::size_t b = 0; b < bodies.size(); ++b)
+    if (!joined[b]) groups_[b] = -1;
+  rows_of_body_.resize(bodies.size());
+}
+
+void JointSystem::begin_step() {
+  std::fill(means_.begin(), means_.end(), JointState{});
+}
+
+JointFrames JointSystem::frames(const Linked& joint, const std::vector<RigidBody>& bodies) const {
+  return {pose_of(joint.first, bodies), pose_of(joint.second, bodies)};
+}
+
+double JointSystem::unwrapped(std::size_t joint, const JointFrames& frames) const {
+  const JointKind kind = joints_[joint].kind;
+  const double now = frames.coordinate(kind), before = kept_[joint].position;
+  if (kind == JointKind::kSlider) return now;
+  return before + std::remainder(now - before, 2.0 * std::numbers::pi);
+}
+
+void JointSystem::predict(const std::vector<RigidBody>& bodies, std::span<ViscousBody> out) const {
+  for (std::size_t j = 0; j < joints_.size(); ++j) {
+    const Wrench& impulse = kept_[j].impulse;
+    const glm::dvec3 point = frames(joints_[j], bodies).point();
+    const auto give = [&](int b, double sign) {
+      if (!is_free(b, bodies)) return;
+      const auto index = static_cast<std::size_t>(b);
+      const glm::dvec3 moment = impulse.torque + glm::cross(point - bodies[index].position, impulse.force);
+      body_solve::add_vector(out[index].momentum, 0, sign * impulse.force);
+      body_solve::add_vector(out[index].momentum, 3, sign * moment);
+    };
+    give(joints_[j].first.body, 1.0);
+    give(joints_[j].second.body, -1.0);
+  }
+}
+
+void JointSystem::report(const std::vector<RigidBody>& bodies, double dt, double share) {
+  for (KeptJoint& kept : kept_) {
+    kept.motor = kept.stop = 0.0;
+    kept.impulse = Wrench{};
+  }
+  const auto add = [&](Wrench& to, std::size_t joint, const JointRow& row, double impulse) {
+    const glm::dvec3 along = impulse * frames(joints_[joint], bodies).axis(row.axis);
+    (row.turning ? to.torque : to.force) += along;
+  };
+  for (const Held& held : rows_) {
+    const auto joint = static_cast<std::size_t>(held.joint);
+    add(kept_[joint].impulse, joint, held.row, held.impulse);
+    if (!held.damper) add(means_[joint].reaction, joint, held.row, share / dt * held.impulse);
+  }
+  for (const AxisRow& axis : axes_) {
+    const auto joint = static_cast<std::size_t>(axis.joint);
+    const double impulse = axis.sign * axis.row.impulse;
+    const JointRow row = free_row(joints_[joint].kind);
+    add(kept_[joint].impulse, joint, row, impulse);
+    (axis.motor ? kept_[joint].motor : kept_[joint].stop) += impulse;
+    if (axis.motor)
+      means_[joint].motor += share / dt * impulse;
+    else
+      add(means_[joint].reaction, joint, row, share / dt * impulse);
+  }
+}
+
+void JointSystem::fill(const std::vector<RigidBody>& bodies, std::vector<JointState>& out) const {
+  out.resize(joints_.size());
+  for (std::size_t j = 0; j < joints_.size(); ++j) {
+    const Linked& joint = joints_[j];
+    const JointFrames f = frames(joint, bodies);
+    const int a = joint.first.body, b = joint.second.body;
+    const glm::dvec3 moving = joint.kind == JointKind::kHinge
+                                  ? turning_of(a, bodies) - turning_of(b, bodies)
+                                  : velocity_of(a, bodies, f.point()) - velocity_of(b, bodies, f.point());
+    out[j] = means_[j];
+    out[j].position = unwrapped(j, f);
+    out[j].speed = glm::dot(f.axis(free_row(joint.kind).axis), moving);
+  }
+}
+
+void JointSystem::restore(std::vector<KeptJoint> kept, std::vector<JointState> means) {
+  kept_ = std::move(kept);
+  means_ = std::move(means);
+}
+
+}  // namespace slosh
