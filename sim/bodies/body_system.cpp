@@ -74,7 +74,8 @@ void BodySystem::predict(const Plan& plan, const BodyForces& forces, const SubSt
     if (!out[b].moves) continue;
     Wrench external = forces.fluid[b];
     external.force += body.mass * forces.gravity;
-    const Matrix6* drag = forces.drags.empty() ? nullptr : &forces.drags[b];
+    Matrix6 room;
+    const Matrix6* drag = drag_on(static_cast<int>(b), forces, step.dt, room, external);
     assemble_body(body, external, held, step.dt, out[b].inertia, out[b].momentum, drag);
   }
   if (part && plan.has(PassId::kJoints)) joints_.predict(bodies_, out);
@@ -116,6 +117,15 @@ std::span<const ActiveCoupling> BodySystem::couplings_of(int body) const {
   return {first, last};
 }
 
+// What a body loses of `external` for each unit of twist, where that is anything; `room` for it.
+const Matrix6* BodySystem::drag_on(int body, const BodyForces& forces, double dt, Matrix6& room,
+                                   Wrench& external) const {
+  const Matrix6* drag = forces.drags.empty() ? nullptr : &forces.drags[static_cast<std::size_t>(body)];
+  if (joints_.empty()) return drag;
+  room = drag ? *drag : Matrix6{};
+  return joints_.add_stiffness(body, bodies_, dt, room, external) ? &room : drag;
+}
+
 // By a hand, itself or by joints.
 bool BodySystem::is_held(int body) const {
   const int group = joints_.group_of(body);
@@ -139,7 +149,8 @@ std::uint32_t BodySystem::solve_alone(const BodyForces& forces, const SubStep& s
     }
     Wrench external = forces.fluid[b];
     external.force += body.mass * forces.gravity;
-    const Matrix6* drag = forces.drags.empty() ? nullptr : &forces.drags[b];
+    Matrix6 room;
+    const Matrix6* drag = drag_on(static_cast<int>(b), forces, step.dt, room, external);
     if (solve_body(body, external, held, step.dt, solves_[b], drag)) continue;
     status |= kStatusNonFinite;
     body.velocity = body.angular_momentum = body.angular_velocity = glm::dvec3(0.0);

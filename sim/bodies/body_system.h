@@ -79,6 +79,8 @@ class BodySystem {
  private:
   std::span<const ActiveCoupling> couplings_of(int body) const;
   bool is_held(int body) const;
+  const Matrix6* drag_on(int body, const BodyForces& forces, double dt, Matrix6& room,
+                         Wrench& external) const;
   std::uint32_t solve_alone(const BodyForces& forces, const SubStep& step);
   void report(const SubStep& step);
 

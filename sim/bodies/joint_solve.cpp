@@ -13,10 +13,15 @@ namespace slosh {
 namespace {
 
 // Iterations that find the impulses for the end of the sub-step, and what is exact, m or rad.
-constexpr int kMaxJointIterations = 10;
+constexpr int kMaxJointIterations = 20;
 constexpr double kExactJoint = 1e-13;
 // m or rad that a joint may be off before that is undone: rounding is less.
 constexpr double kJointDrift = 1e-10;
+// m or rad to which impulses for the end of the sub-step must come, else there are none.
+constexpr double kHoldsJoint = 1e-8;
+// Share of the energy that is in the bend of the way where bodies turn by some 0.2 rad in a sub-step: up to
+// there SHAKE keeps energy by itself.
+constexpr double kFarTurn = 0.01;
 // Added to the diagonal, as a share: loops of joints hold some things twice.
 constexpr double kTwiceHeld = 1e-10;
 // A motor or stop that all of the rest leaves less than this share of its give is held already.
@@ -124,54 +129,145 @@ void JointSystem::apply(const std::vector<double>& impulses, Vector6 BodySolve::
   }
 }
 
-// By Newton's iterations with the rows at the sub-step's beginning.
-void JointSystem::correct(const std::vector<RigidBody>& bodies, const DrivenBodies& driven, double dt,
-                          bool travel, std::vector<BodySolve>& solves) {
-  ends_.resize(bodies.size());
-  std::vector<double> wrong(rows_.size());
-  double before = std::numeric_limits<double>::infinity();
-  for (int turn = 0; turn < kMaxJointIterations; ++turn) {
-    const auto end_of = [&](int body) {
-      if (body < 0) return;
-      const BodySolve& solve = solves[index(body)];
-      RigidBody& end = ends_[index(body)];
-      end = bodies[index(body)];
-      if (solve.driven) end = driven.moved(end, body);
-      if (!solve.moves) return;
-      BodySolve way = solve;
-      if (!travel) way.travel = way.velocity;
-      advance_body(end, way, dt);
-    };
-    double worst = 0.0;
-    for (std::size_t j = 0; j < joints_.size(); ++j) {
-      if (first_row_[j] == first_row_[j + 1]) continue;
-      end_of(joints_[j].first.body);
-      end_of(joints_[j].second.body);
-      const auto off = frames(joints_[j], ends_).off(joints_[j].kind);
-      for (std::size_t r = first_row_[j]; r < first_row_[j + 1]; ++r) {
-        const Held& held = rows_[r];
-        if (held.damper)
-          wrong[r] = travel ? 0.0 : speed_of(held, solves, &BodySolve::velocity) + held.give * held.impulse;
-        else
-          wrong[r] = (off[r - first_row_[j]] - (travel ? 1.0 - kOverlapRate : 1.0) * held.off) / dt;
-        worst = std::max(worst, std::abs(wrong[r]) * dt);
-      }
-    }
-    if (!(worst > kExactJoint) || !(worst < 0.5 * before)) return;
-    before = worst;
-    matrix_.solve(wrong);
-    for (double& impulse : wrong) impulse = -impulse;
-    apply(wrong, travel ? &BodySolve::travel : &BodySolve::velocity, solves);
-    if (travel) continue;
-    for (std::size_t r = 0; r < rows_.size(); ++r) rows_[r].impulse += wrong[r];
+// The rows where `poses` have the bodies.
+void JointSystem::turn_rows(const std::vector<RigidBody>& poses, const std::vector<BodySolve>& solves) {
+  for (Held& held : rows_) {
+    const Linked& joint = joints_[index(held.joint)];
+    const JointFrames f = frames(joint, poses);
+    held.on_first = row_on(joint.first.body, poses, solves, f, held.row, 1.0);
+    held.on_second = row_on(joint.second.body, poses, solves, f, held.row, -1.0);
   }
+  factor();
+}
+
+// m/s or rad/s by which every held row ends the sub-step off `left` of what it was off when that began; a
+// damper's is 0. Returns the largest, as m or rad.
+double JointSystem::find_wrong(const std::vector<RigidBody>& bodies, const DrivenBodies& driven, double dt,
+                               Vector6 BodySolve::* way, double left, const std::vector<BodySolve>& solves) {
+  ends_.resize(bodies.size());
+  wrong_.assign(rows_.size(), 0.0);
+  const auto end_of = [&](int body) {
+    if (body < 0) return;
+    const BodySolve& solve = solves[index(body)];
+    RigidBody& end = ends_[index(body)];
+    end = bodies[index(body)];
+    if (solve.driven) end = driven.moved(end, body);
+    if (!solve.moves) return;
+    BodySolve going = solve;
+    going.travel = solve.*way;
+    advance_body(end, going, dt);
+  };
+  double worst = 0.0;
+  for (std::size_t j = 0; j < joints_.size(); ++j) {
+    if (first_row_[j] == first_row_[j + 1]) continue;
+    end_of(joints_[j].first.body);
+    end_of(joints_[j].second.body);
+    const auto off = frames(joints_[j], ends_).off(joints_[j].kind);
+    for (std::size_t r = 0; r < kRowsPerJoint; ++r) {
+      const std::size_t row = first_row_[j] + r;
+      const double beyond = off[r] - left * rows_[row].off;
+      wrong_[row] = beyond / dt;
+      worst = std::max(worst, std::abs(beyond));
+    }
+  }
+  return std::isfinite(worst) ? worst : std::numeric_limits<double>::infinity();
+}
+
+// J of the bodies' motion, as the solve counts it; what hands hold counts as heavier.
+double JointSystem::kinetic_energy(const std::vector<BodySolve>& solves) const {
+  double energy = 0.0;
+  for (std::size_t b = 0; b < solves.size(); ++b) {
+    if (rows_of_body_[b].empty()) continue;
+    for (int i = 0; i < 6; ++i) {
+      double sum = 0.0;
+      for (int k = i; k < 6; ++k) sum += solves[b].factor[k][i] * solves[b].velocity[k];
+      energy += 0.5 * sum * sum;
+    }
+  }
+  return energy;
+}
+
+void JointSystem::give(const std::vector<double>& impulses, double sign, std::vector<BodySolve>& solves) {
+  std::vector<double> given = impulses;
+  for (double& impulse : given) impulse *= sign;
+  apply(given, &BodySolve::velocity, solves);
+  for (std::size_t r = 0; r < rows_.size(); ++r) rows_[r].impulse += given[r];
+}
+
+// No row's speed, but for a damper's, which is what it lets pass.
+void JointSystem::hold_speeds(std::vector<BodySolve>& solves) {
+  wrong_.resize(rows_.size());
+  for (std::size_t r = 0; r < rows_.size(); ++r) wrong_[r] = speed_of(rows_[r], solves, &BodySolve::velocity);
+  std::vector<double> impulses = wrong_;
+  matrix_.solve(impulses);
+  lost_ = 0.0;
+  for (std::size_t r = 0; r < rows_.size(); ++r) lost_ += 0.5 * impulses[r] * wrong_[r];
+  give(impulses, -1.0, solves);
+}
+
+// What the rows have to give beyond that for the joints to hold at the sub-step's end, by Newton's
+// iterations. Its energy is what the next sub-step's hold_speeds() takes: that must not be less, where bodies
+// turn so far in a sub-step that one follows badly from the other.
+void JointSystem::bend(const std::vector<RigidBody>& bodies, const DrivenBodies& driven, double dt,
+                       std::vector<BodySolve>& solves) {
+  bent_.assign(rows_.size(), 0.0);
+  std::vector<double> sum(rows_.size(), 0.0);
+  const std::vector<BodySolve> straight = solves;
+  double worst = find_wrong(bodies, driven, dt, &BodySolve::velocity, 1.0, solves);
+  for (int turn = 0; turn < kMaxJointIterations && worst > kExactJoint; ++turn) {
+    std::vector<double> impulses = wrong_;
+    matrix_.solve(impulses);
+    for (std::size_t r = 0; r < rows_.size(); ++r) sum[r] -= impulses[r];
+    for (double& impulse : impulses) impulse = -impulse;
+    apply(impulses, &BodySolve::velocity, solves);
+    const double before = worst;
+    worst = find_wrong(bodies, driven, dt, &BodySolve::velocity, 1.0, solves);
+    if (!(worst < 0.5 * before)) break;
+  }
+  double share = worst < kHoldsJoint ? 1.0 : 0.0;
+  double added = 0.0;
+  for (std::size_t r = 0; r < rows_.size(); ++r) {
+    added += 0.5 * sum[r] *
+             (speed_of(rows_[r], solves, &BodySolve::velocity) -
+              speed_of(rows_[r], straight, &BodySolve::velocity));
+  }
+  if (share > 0.0 && added > lost_ && added > kFarTurn * kinetic_energy(solves))
+    share = std::sqrt(std::max(lost_, 0.0) / added);
+  holds_ = share == 1.0;
+  solves = straight;
+  for (std::size_t r = 0; r < rows_.size(); ++r) bent_[r] = share * sum[r];
+  give(bent_, 1.0, solves);
+}
+
+// The poses' way, with the rows where they end: it leaves no velocity.
+void JointSystem::correct_travel(const std::vector<RigidBody>& bodies, const DrivenBodies& driven, double dt,
+                                 std::vector<BodySolve>& solves) {
+  std::vector<BodySolve> best = solves;
+  double least = std::numeric_limits<double>::infinity();
+  for (int turn = 0; turn < kMaxJointIterations; ++turn) {
+    const double worst = find_wrong(bodies, driven, dt, &BodySolve::travel, 1.0 - kOverlapRate, solves);
+    if (worst < least) {
+      least = worst;
+      best = solves;
+    }
+    if (!(worst > kExactJoint) || !(worst < 2.0 * least)) break;
+    const std::vector<double> wrong = wrong_;
+    turn_rows(ends_, solves);
+    if (rows_.empty()) break;
+    std::vector<double> impulses = wrong;
+    matrix_.solve(impulses);
+    for (double& impulse : impulses) impulse = -impulse;
+    apply(impulses, &BodySolve::travel, solves);
+  }
+  for (std::size_t b = 0; b < solves.size(); ++b) solves[b].travel = best[b].travel;
 }
 
 void JointSystem::begin(const std::vector<RigidBody>& bodies, const DrivenBodies& driven, double dt,
                         std::vector<BodySolve>& solves) {
   make_rows(bodies, dt, solves);
   factor();
-  correct(bodies, driven, dt, false, solves);
+  hold_speeds(solves);
+  bend(bodies, driven, dt, solves);
   for (BodySolve& solve : solves) solve.travel = solve.velocity;
   opened_.assign(rows_.size(), 0.0);
   make_axes(bodies, solves, dt);
@@ -265,22 +361,23 @@ void JointSystem::count(const JointSpread& spread, double impulse) {
 
 void JointSystem::finish(const std::vector<RigidBody>& bodies, const DrivenBodies& driven, double dt,
                          double share, std::vector<BodySolve>& solves) {
+  bool same = true, drifted = !holds_, pushed = false;
   for (const AxisRow& axis : axes_) count(axis.spread, axis.row.impulse);
-  if (!rows_.empty()) {
-    matrix_.solve(opened_);
-    for (std::size_t r = 0; r < rows_.size(); ++r) rows_[r].impulse -= opened_[r];
-  }
-  bool same = true, drifted = false;
+  for (const double opened : opened_) pushed = pushed || opened != 0.0;
   for (std::size_t b = 0; b < solves.size(); ++b)
     same = same && (rows_of_body_[b].empty() || solves[b].travel == solves[b].velocity);
   for (const Held& held : rows_) drifted = drifted || std::abs(held.off) > kJointDrift;
-  correct(bodies, driven, dt, false, solves);
-  if (same) {
-    for (std::size_t b = 0; b < solves.size(); ++b)
+  if (pushed) {
+    matrix_.solve(opened_);
+    for (std::size_t r = 0; r < rows_.size(); ++r) rows_[r].impulse -= opened_[r];
+    give(bent_, -1.0, solves);
+    bend(bodies, driven, dt, solves);
+    drifted = drifted || !holds_;
+    for (std::size_t b = 0; same && b < solves.size(); ++b)
       if (!rows_of_body_[b].empty()) solves[b].travel = solves[b].velocity;
   }
-  if (!same || drifted) correct(bodies, driven, dt, true, solves);
   report(bodies, dt, share);
+  if (!same || drifted) correct_travel(bodies, driven, dt, solves);
 }
 
 }  // namespace slosh

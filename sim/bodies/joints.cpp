@@ -78,6 +78,31 @@ void JointSystem::begin_step() {
   std::fill(means_.begin(), means_.end(), JointState{});
 }
 
+// By its last impulses. A force F at an arm r turns the body back by (r·F)(1 − n nᵀ), n = F/|F|, about each
+// axis (geometric stiffness; Tournier et al. 2015, Andrews et al. 2017). Leap-frog bears dt² K of four times
+// the inertia; from twice on half of it is a damping, by the end velocity, which brings no energy in.
+bool JointSystem::add_stiffness(int body, const std::vector<RigidBody>& bodies, double dt, Matrix6& drag,
+                                Wrench& external) const {
+  if (group_of(body) < 0) return false;
+  const RigidBody& b = bodies[static_cast<std::size_t>(body)];
+  glm::dmat3 stiffness(0.0);
+  for (std::size_t j = 0; j < joints_.size(); ++j) {
+    const bool first = joints_[j].first.body == body;
+    if (!first && joints_[j].second.body != body) continue;
+    const glm::dvec3 force = (first ? 1.0 : -1.0) / dt * kept_[j].impulse.force;
+    const double square = glm::dot(force, force);
+    const double along = glm::dot(frames(joints_[j], bodies).point() - b.position, force);
+    if (along > 0.0)
+      stiffness += along * (glm::dmat3(1.0) - glm::outerProduct(force, force) * (1.0 / square));
+  }
+  const glm::dmat3 added = 0.5 * dt * dt * stiffness, left = b.world_inertia() - added;
+  const double minor = left[0][0] * left[1][1] - left[0][1] * left[1][0];
+  if (left[0][0] > 0.0 && minor > 0.0 && glm::determinant(left) > 0.0) return false;
+  body_solve::add_block(drag, 3, 3, (1.0 / dt) * added);
+  external.torque -= (1.0 / dt) * (added * b.angular_velocity);
+  return true;
+}
+
 JointFrames JointSystem::frames(const Linked& joint, const std::vector<RigidBody>& bodies) const {
   return {pose_of(joint.first, bodies), pose_of(joint.second, bodies)};
 }

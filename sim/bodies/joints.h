@@ -52,6 +52,11 @@ class JointSystem {
 
   /// Forgets the means over the last step.
   void begin_step();
+  /// Damps the turning of a body that the forces in its joints would turn back too stiffly for a sub-step of
+  /// `dt` s, a light link that carries much, by what it adds to `drag` (World::drags) and to `external`. True
+  /// where it is anything.
+  bool add_stiffness(int body, const std::vector<RigidBody>& bodies, double dt, Matrix6& drag,
+                     Wrench& external) const;
   /// Changes the solved velocities so that the joints hold at the sub-step's end. `driven` has driven its
   /// bodies.
   void begin(const std::vector<RigidBody>& bodies, const DrivenBodies& driven, double dt,
@@ -103,8 +108,16 @@ class JointSystem {
   void make_axes(const std::vector<RigidBody>& bodies, const std::vector<BodySolve>& solves, double dt);
   void apply(const std::vector<double>& impulses, Vector6 BodySolve::* speed,
              std::vector<BodySolve>& solves) const;
-  void correct(const std::vector<RigidBody>& bodies, const DrivenBodies& driven, double dt, bool travel,
-               std::vector<BodySolve>& solves);
+  void turn_rows(const std::vector<RigidBody>& poses, const std::vector<BodySolve>& solves);
+  double find_wrong(const std::vector<RigidBody>& bodies, const DrivenBodies& driven, double dt,
+                    Vector6 BodySolve::* way, double left, const std::vector<BodySolve>& solves);
+  double kinetic_energy(const std::vector<BodySolve>& solves) const;
+  void give(const std::vector<double>& impulses, double sign, std::vector<BodySolve>& solves);
+  void hold_speeds(std::vector<BodySolve>& solves);
+  void bend(const std::vector<RigidBody>& bodies, const DrivenBodies& driven, double dt,
+            std::vector<BodySolve>& solves);
+  void correct_travel(const std::vector<RigidBody>& bodies, const DrivenBodies& driven, double dt,
+                      std::vector<BodySolve>& solves);
   void report(const std::vector<RigidBody>& bodies, double dt, double share);
 
   std::vector<Linked> joints_;
@@ -116,6 +129,10 @@ class JointSystem {
   std::vector<std::size_t> first_row_;  // of each joint, and their number
   std::vector<std::vector<int>> rows_of_body_;
   std::vector<double> opened_;  // by what the contacts' solve gave, a held row each
+  std::vector<double> wrong_;   // m/s or rad/s, likewise
+  std::vector<double> bent_;    // impulses of bend(), likewise
+  double lost_ = 0.0;           // J that hold_speeds() took
+  bool holds_ = true;           // the joints hold at the sub-step's end
   std::vector<AxisRow> axes_;
   std::vector<RigidBody> ends_;  // at the sub-step's end
   Skyline matrix_;

@@ -188,8 +188,8 @@ struct Stirrer {
             {k / 60.0, {{0, 0, 0}, glm::angleAxis(kTurning * k / 60.0, glm::dvec3(0, 1, 0))}});
     }
     for (Body& body : b.scene.bodies) body.dynamic_viscosity = kFluidsViscosity;
-    // What stands over the rod's place is cut out when the volume is filled.
-    b.add_volume(report::filling_of(kOuter, height));
+    b.add_volume(make::lathe(
+        {{0.0, 0.0}, {kOuter, 0.0}, {kOuter, height}, {kInner, height}, {kInner, 0.02}, {0.0, 0.02}}, 96));
     b.set_domain({-0.2, -0.1, -0.2}, {0.2, 0.3, 0.2});
     Experiment e(b.scene, 0.006);
     e.settle(0.3);
