@@ -19,7 +19,7 @@ std::string describe(const Plan& plan) {
         format("stiffness       %.4g m²/s² (sound at %.3g m/s)\n", plan.stiffness, std::sqrt(plan.stiffness));
   }
   if (plan.driven_speed > 0.0)
-    text += format("driven          at up to %.3g m/s, by start velocities and scripted hands\n",
+    text += format("driven          at up to %.3g m/s, by start velocities, keys and scripted hands\n",
                    plan.driven_speed);
   text +=
       format("time step       %.4g ms, limited by %s\n", plan.time_step * 1e3, plan.time_step_reason.c_str());

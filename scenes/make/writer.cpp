@@ -188,7 +188,11 @@ int SceneWriter::add_node(const std::string& name, int mesh, const Pose& pose, c
 
 void SceneWriter::add_hand(const std::string& name, const std::string& grip,
                            const std::function<Pose(double)>& pose_at, double duration, double rate) {
-  const int node = add_node(name, -1, pose_at(0.0), {{"slosh", "hand"}, {"grip", grip}});
+  animate(add_node(name, -1, pose_at(0.0), {{"slosh", "hand"}, {"grip", grip}}), pose_at, duration, rate);
+}
+
+void SceneWriter::animate(int node, const std::function<Pose(double)>& pose_at, double duration,
+                          double rate) {
   std::vector<float> times;
   std::vector<float> translations;
   std::vector<float> rotations;
@@ -204,7 +208,7 @@ void SceneWriter::add_hand(const std::string& name, const std::string& grip,
     for (const double v : to_list(pose.orientation)) rotations.push_back(static_cast<float>(v));
   }
   tinygltf::Animation animation;
-  animation.name = name;
+  animation.name = model_->nodes[static_cast<std::size_t>(node)].name;
   const int input = add_accessor(times, 1, true, 0);
   for (const bool moves : {true, false}) {
     tinygltf::AnimationSampler sampler;

@@ -57,6 +57,8 @@ class SceneWriter {
   /// Hz.
   void add_hand(const std::string& name, const std::string& grip, const std::function<Pose(double)>& pose_at,
                 double duration, double rate = 60.0);
+  /// Keys of a node without parent, a driven body's: as a hand's.
+  void animate(int node, const std::function<Pose(double)>& pose_at, double duration, double rate = 60.0);
   void add_camera(const glm::dvec3& eye, const glm::dvec3& target, double vertical_fov_deg);
 
   /// One self-contained file: .glb when the name ends so, else .gltf with the buffer inside. False on

@@ -7,6 +7,7 @@
 
 #include "sim/bodies/skyline.h"
 #include "tests/support/linkage.h"
+#include "tests/support/stirred_tank.h"
 
 namespace slosh {
 namespace {
@@ -258,6 +259,65 @@ TEST(DrivenBody, StandsWhileASceneSettles) {
   EXPECT_EQ(state_of(world).bodies[0].pose.position, glm::dvec3(0.0));
   run_for(world, 0.1);
   EXPECT_NEAR(state_of(world).bodies[0].pose.position.x, 0.1, 1e-12);
+}
+
+// The paddle of a tank, driven: what it does to the fluid it is told.
+testing::Tank driven_tank(ParticleModel model) {
+  testing::Tank tank = testing::stirred_tank();
+  tank.scene.model = model;
+  tank.scene.grips.clear();
+  Body& paddle = tank.scene.bodies[1];
+  paddle.motion = BodyMotion::kDriven;
+  paddle.measured = true;
+  for (int k = 0; k <= 30; ++k) {
+    const Pose at = testing::paddle_hand(k / 60.0).pose;
+    paddle.keys.push_back({k / 60.0, {at.position, glm::angleAxis(0.05 * k, glm::dvec3(0, 1, 0))}});
+  }
+  paddle.pose = paddle.keys.front().pose;
+  return tank;
+}
+
+TEST(DrivenBody, FluidAndWrenchesBalanceInEachModel) {
+  for (const ParticleModel model : {ParticleModel::kCorrected, ParticleModel::kIncompressible}) {
+    for (const double viscosity : {0.05, 20.0}) {  // explicit, implicit
+      testing::Tank tank = driven_tank(model);
+      for (Fluid& fluid : tank.scene.fluids) fluid.dynamic_viscosity = viscosity;
+      for (Body& body : tank.scene.bodies) body.dynamic_viscosity = kFluidsViscosity;
+      World world = testing::world_of(tank, 2);
+      EXPECT_EQ(world.plan().has(PassId::kImplicitViscosity), viscosity > 1.0);
+      EXPECT_FALSE(world.plan().has(PassId::kSolveBodies));
+      const double dt = world.plan().time_step, weight = world.diagnostics().mass * kG;
+      for (int i = 0; i < 60; ++i) {
+        const glm::dvec3 before = world.diagnostics().momentum;
+        world.step({});
+        const BodySnapshot state = state_of(world);
+        const glm::dvec3 change = world.diagnostics().momentum - before;
+        const glm::dvec3 force =
+            weight * glm::dvec3(0, -1, 0) - state.bodies[0].fluid.force - state.bodies[1].fluid.force;
+        ASSERT_LE(glm::length(change - dt * force), 2e-4 * weight * dt) << "step " << i;
+      }
+      EXPECT_GT(glm::length(state_of(world).bodies[1].fluid.force), 1e-3) << "it feels the fluid";
+    }
+  }
+}
+
+TEST(DrivenBody, IsTheSameWhateverTheThreadsAndFromASavedWorld) {
+  const testing::Tank tank = driven_tank(ParticleModel::kCorrected);
+  World one = testing::world_of(tank, 1), three = testing::world_of(tank, 3);
+  for (int i = 0; i < 40; ++i) {
+    one.step({});
+    three.step({});
+  }
+  EXPECT_EQ(one.hash(), three.hash());
+  std::vector<std::uint8_t> saved;
+  ASSERT_TRUE(one.save(saved));
+  World other = testing::world_of(tank, 2);
+  ASSERT_TRUE(other.restore(saved));
+  for (int i = 0; i < 40; ++i) {
+    one.step({});
+    other.step({});
+  }
+  EXPECT_EQ(one.hash(), other.hash());
 }
 
 // It takes along what hangs on it: a hinge's other side.
