@@ -143,6 +143,8 @@ std::span<const RigidBody> World::Impl::bodies_after(const SubStep& step) {
 
 void World::Impl::report(const SubStep& step) {
   for (std::size_t b = 0; b < found.size(); ++b) {
+    // Solves with the fluid give only their part of what nobody asked for.
+    if (scene.bodies[b].motion == BodyMotion::kDriven && !scene.bodies[b].measured) continue;
     wrenches[b].force += step.share * found[b].force;
     wrenches[b].torque += step.share * found[b].torque;
   }

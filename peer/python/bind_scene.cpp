@@ -74,7 +74,8 @@ void bind_parts(py::module_& m) {
   py::class_<Body>(m, "Body", "A rigid body of a scene, as it starts.")
       .def_readonly("name", &Body::name, "the node's name in the file")
       .def_property_readonly(
-          "free", [](const Body& b) { return b.motion == BodyMotion::kFree; }, "False: it is fixed")
+          "free", [](const Body& b) { return b.motion == BodyMotion::kFree; },
+          "False: it is fixed, or driven by its keys")
       .def_readonly("point_probe", &Body::point_probe, "True: a point that feels fluid and cannot turn")
       .def_property_readonly(
           "pose", [](const Body& b) { return HandPose{b.pose, {}, {}}; }, "Pose of the mesh frame")

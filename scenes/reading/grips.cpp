@@ -22,7 +22,9 @@ std::string grip_names(const Scene& scene) {
   return list.empty() ? "none" : list;
 }
 
-/// Keys that the run does not come to. A hand of one key stands still on purpose.
+}  // namespace
+
+// One that has one key stands still on purpose.
 void note_late_keys(Reading& reading, int node, const std::vector<PoseKey>& keys) {
   constexpr double kWorthTelling = 0.5;  // s
   const double duration = reading.scene.duration;
@@ -44,8 +46,6 @@ void note_late_keys(Reading& reading, int node, const std::vector<PoseKey>& keys
         "Give the scene duration_s = " + gltf::short_number(std::ceil(keys.back().time)) +
             ", or move the keys: in Blender they count from frame 0"}});
 }
-
-}  // namespace
 
 /// The body that a grip hangs on, and where on it.
 Problem place_grip(Reading& reading, int node, Grip& grip) {

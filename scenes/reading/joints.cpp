@@ -169,6 +169,7 @@ Problem read_keys(Reading& reading, int node, Body& body) {
     return Error{owner + ": extras.repeat",
                  "is true, and the last key is not where the first is: it would jump",
                  "Give the last key the first one's location and rotation (a whole turn is the same)"};
+  if (!body.repeats) note_late_keys(reading, node, body.keys);
   return std::nullopt;
 }
 

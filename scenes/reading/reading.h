@@ -72,9 +72,11 @@ Problem read_probe(Reading& reading, int node);
 Problem read_keys(Reading& reading, int node, Body& body);
 /// No error: a picture that cannot be shown is left out, and told in Reading::notes.
 Problem read_picture(Reading& reading, int node);
-Problem read_grip(Reading& reading, int node);    ///< after all bodies
-Problem order_grips(Reading& reading);            ///< after all grips: by `device`, the others behind
-Problem read_hand(Reading& reading, int node);    ///< after all grips
+Problem read_grip(Reading& reading, int node);  ///< after all bodies
+Problem order_grips(Reading& reading);          ///< after all grips: by `device`, the others behind
+Problem read_hand(Reading& reading, int node);  ///< after all grips
+/// Tells of keys that the run does not come to.
+void note_late_keys(Reading& reading, int node, const std::vector<PoseKey>& keys);
 Problem read_joint(Reading& reading, int node);   ///< after all bodies
 Problem read_gauge(Reading& reading, int node);   ///< after all bodies
 Problem read_region(Reading& reading, int node);  ///< after all bodies

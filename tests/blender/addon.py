@@ -73,8 +73,9 @@ hand = empty("hand", (0.3, 0, 0.3))
 probe = empty("tip", (0, 0, 0.5))
 gauge = empty("level", (0, 0, 0.05))
 region = block("inside", (0.3, 0.3, 0.3), (0, 0, 0.2))
+pivot = empty("pivot", (0, 0, 0.1), paddle)
 kinds = {table: "body", paddle: "body", water: "fluid", handle: "grip", hand: "hand", probe: "probe", gauge: "gauge",
-         region: "region"}
+         region: "region", pivot: "joint"}
 for thing, kind in kinds.items():
     active(thing)
     thing.slosh_kind = kind
@@ -84,7 +85,7 @@ try:
     must(False, "an empty may be a body")
 except TypeError:
     pass
-must(water["fluid"] == "water" and paddle["motion"] == "fixed", "first fields are missing")
+must(water["fluid"] == "water" and paddle["motion"] == "fixed" and pivot["kind"] == "hinge", "first fields are missing")
 
 # A free body without a mass, a hand without a grip: told in the list, with the object's name.
 active(paddle)

@@ -138,6 +138,34 @@ TEST(Chain, of_ten_holds_whatever_hangs_on_it) {
   }
 }
 
+// A plank on a hinge that lies on a narrow block behind its middle. A motor presses it down: what the block
+// bears follows from the torques about the hinge, and the hinge has the rest.
+TEST(HingedPlank, lies_on_a_block_by_what_statics_says) {
+  for (const double torque : {0.0, 4.0}) {
+    constexpr double kMass = 2.0, kHalf = 0.2, kBlock = 0.1;  // kg; m from the plank's middle
+    SceneBuilder b;
+    b.add_fixed("block", make::box({kBlock - 0.005, -0.1, -0.05}, {kBlock + 0.005, -0.02, 0.05}));
+    const int plank = b.add_free("plank", make::box({-kHalf, -0.02, -0.03}, {kHalf, 0.02, 0.03}), kMass);
+    Joint joint;
+    joint.name = "hinge";
+    joint.body = plank;
+    joint.pose = frame_along({0, 0, -1}, {-kHalf, 0.0, 0.0});  // onto the block is forwards
+    joint.motor_speed = torque > 0.0 ? 10.0 : 0.0;
+    joint.motor_limit = torque;
+    b.scene.joints.push_back(joint);
+    b.set_domain(glm::dvec3(-1.0), glm::dvec3(1.0));
+    Experiment e(b.scene, 0.01);
+    e.run(2.0);
+    const JointState& state = e.bodies().joints[0];
+    EXPECT_NEAR(state.position, 0.0, 2e-3);
+    EXPECT_NEAR(state.motor, torque, 1e-9);
+    const double on_block = kMass * kGravity - state.reaction.force.y;
+    const std::string name = torque > 0.0 ? "pressed plank" : "plank";
+    const double expected = (kMass * kGravity * kHalf + torque) / (kHalf + kBlock);
+    EXPECT_LT(std::abs(report(name + " on a hinge, force on its block", on_block, expected, "N")), 0.02);
+  }
+}
+
 // A plate that goes by its keys at 0.2 m/s pushes a box along a table, and leaves it where it stops.
 TEST(DrivenPlate, pushes_a_box_along) {
   SceneBuilder b;

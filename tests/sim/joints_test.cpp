@@ -154,6 +154,34 @@ TEST(Joints, TwoBodiesInSpaceKeepTheirMomenta) {
   }
 }
 
+// What hangs on a held body by joints takes part in a settling, and nothing else does.
+TEST(Joints, SettleWithTheHandThatHoldsOneOfThem) {
+  Linkage link;
+  const int upper = link.add(0.5, glm::dvec3(0.01), {{0.0, -0.1, 0.0}, {1, 0, 0, 0}});
+  const int lower = link.add(0.5, glm::dvec3(0.01), {{0.0, -0.3, 0.0}, {1, 0, 0, 0}});
+  const int alone = link.add(0.5, glm::dvec3(0.01), {{0.5, -0.3, 0.1}, {1, 0, 0, 0}});
+  link.join(JointKind::kHinge, upper, -1, frame_along(kAlongZ, {0, 0, 0}));
+  link.join(JointKind::kHinge, lower, upper, frame_along(kAlongZ, {0, -0.2, 0}));
+  link.join(JointKind::kHinge, alone, -1, frame_along(kAlongZ, {0.4, 0, 0}));
+  Grip grip;
+  grip.name = "hand";
+  grip.body = lower;
+  grip.stiffness = 1e4;
+  grip.rotational_stiffness = 0.0;
+  link.scene.grips.push_back(grip);
+  World world = link.world();
+  HandleInput hand;
+  hand.engaged = true;
+  hand.pose.position = {0.1, -0.25, 0.0};
+  world.settle(2.0, {&hand, 1});
+  const BodySnapshot state = state_of(world);
+  EXPECT_NEAR(glm::distance(state.bodies[1].pose.position, hand.pose.position), 0.0, 2e-3);
+  EXPECT_NEAR(glm::distance(transform_point(state.bodies[1].pose, {0, 0.1, 0}),
+                            transform_point(state.bodies[0].pose, {0, -0.1, 0})),
+              0.0, 1e-8);
+  EXPECT_EQ(state.bodies[static_cast<std::size_t>(alone)].pose.position, glm::dvec3(0.5, -0.3, 0.1));
+}
+
 TEST(Joints, ALoopOfFourBarsHoldsTogether) {
   Linkage link;
   const auto bar = [&](const glm::dvec3& from, const glm::dvec3& to) {
