@@ -22,6 +22,8 @@ constexpr double kHoldsJoint = 1e-8;
 // Share of the energy that is in the bend of the way where bodies turn by some 0.2 rad in a sub-step: up to
 // there SHAKE keeps energy by itself.
 constexpr double kFarTurn = 0.01;
+// N·m·s/rad or N·s/m: less is no damper.
+constexpr double kMinDamping = 1e-9;
 // Added to the diagonal, as a share: loops of joints hold some things twice.
 constexpr double kTwiceHeld = 1e-10;
 // A motor or stop that all of the rest leaves less than this share of its give is held already.
@@ -85,7 +87,7 @@ void JointSystem::make_rows(const std::vector<RigidBody>& bodies, double dt,
     };
     const auto held = held_rows(joint.kind);
     for (int r = 0; r < kRowsPerJoint; ++r) add(held[r], off[r], false);
-    if (joint.damping > 0.0) add(free_row(joint.kind), 0.0, true);
+    if (joint.damping > kMinDamping) add(free_row(joint.kind), 0.0, true);
   }
   first_row_.push_back(rows_.size());
 }

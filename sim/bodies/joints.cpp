@@ -39,6 +39,7 @@ JointSystem::JointSystem(const Scene& scene, const std::vector<RigidBody>& bodie
     : kept_(scene.joints.size()), means_(scene.joints.size()) {
   if (scene.joints.empty()) return;
   groups_.resize(bodies.size());
+  joints_of_body_.resize(bodies.size());
   std::iota(groups_.begin(), groups_.end(), 0);
   std::vector<char> joined(bodies.size(), 0);
   for (const Joint& source : scene.joints) {
@@ -61,9 +62,12 @@ JointSystem::JointSystem(const Scene& scene, const std::vector<RigidBody>& bodie
     for (std::size_t i = 0; i < joints_.size(); ++i)
       if (shared(joints_[i])) joint.neighbours.push_back(static_cast<int>(i));
     joint.neighbours.push_back(static_cast<int>(joints_.size()));
+    for (const int b : {source.body, source.other}) {
+      if (!is_free(b, bodies)) continue;
+      joined[static_cast<std::size_t>(b)] = 1;
+      joints_of_body_[static_cast<std::size_t>(b)].push_back(static_cast<int>(joints_.size()));
+    }
     joints_.push_back(std::move(joint));
-    for (const int b : {source.body, source.other})
-      if (is_free(b, bodies)) joined[static_cast<std::size_t>(b)] = 1;
     if (!is_free(source.body, bodies) || !is_free(source.other, bodies)) continue;
     const int from = groups_[static_cast<std::size_t>(source.body)];
     const int to = groups_[static_cast<std::size_t>(source.other)];
@@ -86,10 +90,10 @@ bool JointSystem::add_stiffness(int body, const std::vector<RigidBody>& bodies, 
   if (group_of(body) < 0) return false;
   const RigidBody& b = bodies[static_cast<std::size_t>(body)];
   glm::dmat3 stiffness(0.0);
-  for (std::size_t j = 0; j < joints_.size(); ++j) {
-    const bool first = joints_[j].first.body == body;
-    if (!first && joints_[j].second.body != body) continue;
-    const glm::dvec3 force = (first ? 1.0 : -1.0) / dt * kept_[j].impulse.force;
+  for (const int joint : joints_of_body_[static_cast<std::size_t>(body)]) {
+    const auto j = static_cast<std::size_t>(joint);
+    const double sign = joints_[j].first.body == body ? 1.0 : -1.0;
+    const glm::dvec3 force = sign / dt * kept_[j].impulse.force;
     const double square = glm::dot(force, force);
     const double along = glm::dot(frames(joints_[j], bodies).point() - b.position, force);
     if (along > 0.0)

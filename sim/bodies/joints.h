@@ -122,6 +122,7 @@ class JointSystem {
 
   std::vector<Linked> joints_;
   std::vector<int> groups_;
+  std::vector<std::vector<int>> joints_of_body_;  // free ones'
   std::vector<KeptJoint> kept_;
   std::vector<JointState> means_;
   // Of this sub-step:
