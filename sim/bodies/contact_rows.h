@@ -47,6 +47,10 @@ SLOSH_HD inline double dot(const Vector6& a, const Vector6& b) {
   return sum;
 }
 
+SLOSH_HD inline void add_scaled(Vector6& to, double by, const Vector6& v) {
+  for (int i = 0; i < 6; ++i) to[i] += by * v[i];
+}
+
 // One direction of one contact: relative velocity is a's minus b's.
 struct Constraint {
   Row on_a, on_b;

@@ -22,125 +22,14 @@ constexpr double kHoldsJoint = 1e-8;
 // Share of the energy that is in the bend of the way where bodies turn by some 0.2 rad in a sub-step: up to
 // there SHAKE keeps energy by itself.
 constexpr double kFarTurn = 0.01;
-// N·m·s/rad or N·s/m: less is no damper.
-constexpr double kMinDamping = 1e-9;
-// Added to the diagonal, as a share: loops of joints hold some things twice.
-constexpr double kTwiceHeld = 1e-10;
 // A motor or stop that all of the rest leaves less than this share of its give is held already.
 constexpr double kHeldAlready = 1e-9;
-
-void add_scaled(Vector6& to, double by, const Vector6& v) {
-  for (int i = 0; i < 6; ++i) to[i] += by * v[i];
-}
 
 std::size_t index(int i) {
   return static_cast<std::size_t>(i);
 }
 
 }  // namespace
-
-rows::Row JointSystem::row_on(int body, const std::vector<RigidBody>& bodies,
-                              const std::vector<BodySolve>& solves, const JointFrames& frames, JointRow row,
-                              double sign) const {
-  rows::Row out;
-  if (body < 0) return out;
-  const BodySolve& solve = solves[index(body)];
-  if (!solve.moves && !solve.driven) return out;
-  const glm::dvec3 along = sign * frames.axis(row.axis);
-  const glm::dvec3 moment =
-      row.turning ? along : glm::cross(frames.point() - bodies[index(body)].position, along);
-  const glm::dvec3 force = row.turning ? glm::dvec3(0.0) : along;
-  out.force = {force.x, force.y, force.z, moment.x, moment.y, moment.z};
-  if (solve.moves) out.response = cholesky_solve(solve.factor, out.force);
-  return out;
-}
-
-double JointSystem::speed_of(const Held& held, const std::vector<BodySolve>& solves,
-                             Vector6 BodySolve::* speed) const {
-  const Linked& joint = joints_[index(held.joint)];
-  double sum = rows::dot(held.on_first.force, solves[index(joint.first.body)].*speed);
-  if (joint.second.body >= 0) sum += rows::dot(held.on_second.force, solves[index(joint.second.body)].*speed);
-  return sum;
-}
-
-void JointSystem::make_rows(const std::vector<RigidBody>& bodies, double dt,
-                            const std::vector<BodySolve>& solves) {
-  rows_.clear();
-  first_row_.clear();
-  for (std::vector<int>& rows : rows_of_body_) rows.clear();
-  for (std::size_t j = 0; j < joints_.size(); ++j) {
-    first_row_.push_back(rows_.size());
-    const Linked& joint = joints_[j];
-    const int a = joint.first.body, b = joint.second.body;
-    const auto moves = [&](int body) { return body >= 0 && solves[index(body)].moves; };
-    const auto gone = [&](int body) { return body >= 0 && bodies[index(body)].gone; };
-    const JointFrames f = frames(joint, bodies);
-    kept_[j].position = unwrapped(j, f);
-    if ((!moves(a) && !moves(b)) || gone(a) || gone(b)) continue;
-    const std::array<double, kRowsPerJoint> off = f.off(joint.kind);
-    const auto add = [&](JointRow row, double by, bool damper) {
-      for (const int body : {a, b})
-        if (moves(body)) rows_of_body_[index(body)].push_back(static_cast<int>(rows_.size()));
-      rows_.push_back({static_cast<int>(j), row, row_on(a, bodies, solves, f, row, 1.0),
-                       row_on(b, bodies, solves, f, row, -1.0), damper ? 1.0 / (joint.damping * dt) : 0.0, by,
-                       0.0, damper});
-    };
-    const auto held = held_rows(joint.kind);
-    for (int r = 0; r < kRowsPerJoint; ++r) add(held[r], off[r], false);
-    if (joint.damping > kMinDamping) add(free_row(joint.kind), 0.0, true);
-  }
-  first_row_.push_back(rows_.size());
-}
-
-void JointSystem::factor() {
-  matrix_.clear(rows_.size());
-  for (std::size_t j = 0; j < joints_.size(); ++j) {
-    const int a = joints_[j].first.body, b = joints_[j].second.body;
-    for (const int neighbour : joints_[j].neighbours) {
-      const Linked& other = joints_[index(neighbour)];
-      for (std::size_t r = first_row_[j]; r < first_row_[j + 1]; ++r) {
-        const std::size_t end = std::min(first_row_[index(neighbour) + 1], r + 1);
-        for (std::size_t s = first_row_[index(neighbour)]; s < end; ++s) {
-          double sum = 0.0;
-          const auto meet = [&](int mine, const rows::Row& row, int theirs, const rows::Row& by) {
-            if (mine >= 0 && mine == theirs) sum += rows::dot(row.force, by.response);
-          };
-          meet(a, rows_[r].on_first, other.first.body, rows_[s].on_first);
-          meet(a, rows_[r].on_first, other.second.body, rows_[s].on_second);
-          meet(b, rows_[r].on_second, other.first.body, rows_[s].on_first);
-          meet(b, rows_[r].on_second, other.second.body, rows_[s].on_second);
-          if (r == s) sum = sum * (1.0 + kTwiceHeld) + rows_[r].give;
-          if (sum != 0.0) matrix_.add(r, s, sum);
-        }
-      }
-    }
-  }
-  if (matrix_.factor()) return;
-  rows_.clear();
-  std::fill(first_row_.begin(), first_row_.end(), 0);
-  for (std::vector<int>& rows : rows_of_body_) rows.clear();
-}
-
-void JointSystem::apply(const std::vector<double>& impulses, Vector6 BodySolve::* speed,
-                        std::vector<BodySolve>& solves) const {
-  for (std::size_t r = 0; r < rows_.size(); ++r) {
-    const Linked& joint = joints_[index(rows_[r].joint)];
-    add_scaled(solves[index(joint.first.body)].*speed, impulses[r], rows_[r].on_first.response);
-    if (joint.second.body >= 0)
-      add_scaled(solves[index(joint.second.body)].*speed, impulses[r], rows_[r].on_second.response);
-  }
-}
-
-// The rows where `poses` have the bodies.
-void JointSystem::turn_rows(const std::vector<RigidBody>& poses, const std::vector<BodySolve>& solves) {
-  for (Held& held : rows_) {
-    const Linked& joint = joints_[index(held.joint)];
-    const JointFrames f = frames(joint, poses);
-    held.on_first = row_on(joint.first.body, poses, solves, f, held.row, 1.0);
-    held.on_second = row_on(joint.second.body, poses, solves, f, held.row, -1.0);
-  }
-  factor();
-}
 
 // m/s or rad/s by which every held row ends the sub-step off `left` of what it was off when that began; a
 // damper's is 0. Returns the largest, as m or rad.
@@ -159,7 +48,7 @@ double JointSystem::find_wrong(const std::vector<RigidBody>& bodies, const Drive
     going.travel = solve.*way;
     advance_body(end, going, dt);
   };
-  double worst = 0.0;
+  worst_.assign(groups_.size(), 0.0);
   for (std::size_t j = 0; j < joints_.size(); ++j) {
     if (first_row_[j] == first_row_[j + 1]) continue;
     end_of(joints_[j].first.body);
@@ -169,24 +58,32 @@ double JointSystem::find_wrong(const std::vector<RigidBody>& bodies, const Drive
       const std::size_t row = first_row_[j] + r;
       const double beyond = off[r] - left * rows_[row].off;
       wrong_[row] = beyond / dt;
-      worst = std::max(worst, std::abs(beyond));
+      double& worst = worst_[group(row)];
+      worst =
+          std::isfinite(beyond) ? std::max(worst, std::abs(beyond)) : std::numeric_limits<double>::infinity();
     }
   }
-  return std::isfinite(worst) ? worst : std::numeric_limits<double>::infinity();
+  return *std::max_element(worst_.begin(), worst_.end());
 }
 
-// J of the bodies' motion, as the solve counts it; what hands hold counts as heavier.
-double JointSystem::kinetic_energy(const std::vector<BodySolve>& solves) const {
-  double energy = 0.0;
+std::size_t JointSystem::group(std::size_t row) const {
+  const Linked& joint = joints_[index(rows_[row].joint)];
+  const int first = groups_[index(joint.first.body)];
+  return index(first >= 0 ? first : groups_[index(joint.second.body)]);
+}
+
+// J of the motion of each group's bodies, as the solve counts it; what hands hold counts as heavier.
+std::vector<double> JointSystem::kinetic_energies(const std::vector<BodySolve>& solves) const {
+  std::vector<double> energies(groups_.size(), 0.0);
   for (std::size_t b = 0; b < solves.size(); ++b) {
     if (rows_of_body_[b].empty()) continue;
     for (int i = 0; i < 6; ++i) {
       double sum = 0.0;
       for (int k = i; k < 6; ++k) sum += solves[b].factor[k][i] * solves[b].velocity[k];
-      energy += 0.5 * sum * sum;
+      energies[index(groups_[b])] += 0.5 * sum * sum;
     }
   }
-  return energy;
+  return energies;
 }
 
 void JointSystem::give(const std::vector<double>& impulses, double sign, std::vector<BodySolve>& solves) {
@@ -202,42 +99,56 @@ void JointSystem::hold_speeds(std::vector<BodySolve>& solves) {
   for (std::size_t r = 0; r < rows_.size(); ++r) wrong_[r] = speed_of(rows_[r], solves, &BodySolve::velocity);
   std::vector<double> impulses = wrong_;
   matrix_.solve(impulses);
-  lost_ = 0.0;
-  for (std::size_t r = 0; r < rows_.size(); ++r) lost_ += 0.5 * impulses[r] * wrong_[r];
+  lost_.assign(groups_.size(), 0.0);
+  for (std::size_t r = 0; r < rows_.size(); ++r) lost_[group(r)] += 0.5 * impulses[r] * wrong_[r];
   give(impulses, -1.0, solves);
 }
 
 // What the rows have to give beyond that for the joints to hold at the sub-step's end, by Newton's
 // iterations. Its energy is what the next sub-step's hold_speeds() takes: that must not be less, where bodies
-// turn so far in a sub-step that one follows badly from the other.
+// turn so far in a sub-step that one follows badly from the other. Each group by itself.
 void JointSystem::bend(const std::vector<RigidBody>& bodies, const DrivenBodies& driven, double dt,
                        std::vector<BodySolve>& solves) {
+  const std::size_t count = groups_.size();
   bent_.assign(rows_.size(), 0.0);
-  std::vector<double> sum(rows_.size(), 0.0);
+  std::vector<double> sum(rows_.size(), 0.0), before(count, std::numeric_limits<double>::infinity());
+  std::vector<char> done(count, 0);
   const std::vector<BodySolve> straight = solves;
-  double worst = find_wrong(bodies, driven, dt, &BodySolve::velocity, 1.0, solves);
-  for (int turn = 0; turn < kMaxJointIterations && worst > kExactJoint; ++turn) {
+  for (int turn = 0;; ++turn) {
+    find_wrong(bodies, driven, dt, &BodySolve::velocity, 1.0, solves);
+    bool all = true;
+    for (std::size_t g = 0; g < count; ++g) {
+      done[g] = done[g] || !(worst_[g] > kExactJoint) || !(worst_[g] < 0.5 * before[g]);
+      before[g] = worst_[g];
+      all = all && done[g];
+    }
+    if (all || turn == kMaxJointIterations) break;
     std::vector<double> impulses = wrong_;
+    for (std::size_t r = 0; r < rows_.size(); ++r)
+      if (done[group(r)]) impulses[r] = 0.0;
     matrix_.solve(impulses);
-    for (std::size_t r = 0; r < rows_.size(); ++r) sum[r] -= impulses[r];
     for (double& impulse : impulses) impulse = -impulse;
+    for (std::size_t r = 0; r < rows_.size(); ++r) sum[r] += impulses[r];
     apply(impulses, &BodySolve::velocity, solves);
-    const double before = worst;
-    worst = find_wrong(bodies, driven, dt, &BodySolve::velocity, 1.0, solves);
-    if (!(worst < 0.5 * before)) break;
   }
-  double share = worst < kHoldsJoint ? 1.0 : 0.0;
-  double added = 0.0;
+  std::vector<double> added(count, 0.0), share(count, 1.0);
   for (std::size_t r = 0; r < rows_.size(); ++r) {
-    added += 0.5 * sum[r] *
-             (speed_of(rows_[r], solves, &BodySolve::velocity) -
-              speed_of(rows_[r], straight, &BodySolve::velocity));
+    added[group(r)] += 0.5 * sum[r] *
+                       (speed_of(rows_[r], solves, &BodySolve::velocity) -
+                        speed_of(rows_[r], straight, &BodySolve::velocity));
   }
-  if (share > 0.0 && added > lost_ && added > kFarTurn * kinetic_energy(solves))
-    share = std::sqrt(std::max(lost_, 0.0) / added);
-  holds_ = share == 1.0;
+  const std::vector<double> kinetic = kinetic_energies(solves);
+  holds_ = true;
+  for (std::size_t g = 0; g < count; ++g) {
+    if (!(worst_[g] < kHoldsJoint))
+      share[g] = 0.0;
+    else if (added[g] > lost_[g] && added[g] > kFarTurn * kinetic[g])
+      share[g] = std::sqrt(std::max(lost_[g], 0.0) / added[g]);
+    holds_ = holds_ && share[g] == 1.0;
+  }
   solves = straight;
-  for (std::size_t r = 0; r < rows_.size(); ++r) bent_[r] = share * sum[r];
+  for (std::size_t r = 0; r < rows_.size(); ++r)
+    bent_[r] = share[group(r)] > 0.0 ? share[group(r)] * sum[r] : 0.0;
   give(bent_, 1.0, solves);
 }
 
@@ -296,17 +207,17 @@ void JointSystem::keep_joints(int a, int b, rows::Constraint& row, JointSpread& 
   for (std::size_t r = 0; r < opened.size(); ++r) {
     if (opened[r] == 0.0) continue;
     const Linked& joint = joints_[index(rows_[r].joint)];
-    add_scaled(responses[joint.first.body], -opened[r], rows_[r].on_first.response);
+    rows::add_scaled(responses[joint.first.body], -opened[r], rows_[r].on_first.response);
     if (joint.second.body >= 0)
-      add_scaled(responses[joint.second.body], -opened[r], rows_[r].on_second.response);
+      rows::add_scaled(responses[joint.second.body], -opened[r], rows_[r].on_second.response);
   }
   const double alone =
       rows::dot(row.on_a.force, row.on_a.response) + rows::dot(row.on_b.force, row.on_b.response);
   for (const auto& [body, response] : responses) {
     if (body == a)
-      add_scaled(row.on_a.response, 1.0, response);
+      rows::add_scaled(row.on_a.response, 1.0, response);
     else if (body == b)
-      add_scaled(row.on_b.response, 1.0, response);
+      rows::add_scaled(row.on_b.response, 1.0, response);
     else
       spread.responses.emplace_back(body, response);
   }

@@ -111,7 +111,9 @@ class JointSystem {
   void turn_rows(const std::vector<RigidBody>& poses, const std::vector<BodySolve>& solves);
   double find_wrong(const std::vector<RigidBody>& bodies, const DrivenBodies& driven, double dt,
                     Vector6 BodySolve::* way, double left, const std::vector<BodySolve>& solves);
-  double kinetic_energy(const std::vector<BodySolve>& solves) const;
+  std::vector<double> kinetic_energies(const std::vector<BodySolve>& solves) const;
+  /// Of a row's joint, below the number of bodies.
+  std::size_t group(std::size_t row) const;
   void give(const std::vector<double>& impulses, double sign, std::vector<BodySolve>& solves);
   void hold_speeds(std::vector<BodySolve>& solves);
   void bend(const std::vector<RigidBody>& bodies, const DrivenBodies& driven, double dt,
@@ -132,7 +134,8 @@ class JointSystem {
   std::vector<double> opened_;  // by what the contacts' solve gave, a held row each
   std::vector<double> wrong_;   // m/s or rad/s, likewise
   std::vector<double> bent_;    // impulses of bend(), likewise
-  double lost_ = 0.0;           // J that hold_speeds() took
+  std::vector<double> lost_;    // J that hold_speeds() took, a group each
+  std::vector<double> worst_;   // m or rad, likewise
   bool holds_ = true;           // the joints hold at the sub-step's end
   std::vector<AxisRow> axes_;
   std::vector<RigidBody> ends_;  // at the sub-step's end

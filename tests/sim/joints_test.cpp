@@ -154,6 +154,28 @@ TEST(Joints, TwoBodiesInSpaceKeepTheirMomenta) {
   }
 }
 
+// An off-centre rotor that turns by a radian in a step keeps its hinge and gains nothing; a pendulum beside
+// it does not even notice.
+TEST(Joints, AFastRotorDisturbsNobodyElse) {
+  Linkage both, alone;
+  for (Linkage* link : {&both, &alone}) {
+    link->time_step = 0.004;
+    add_pendulum(*link, 1.0, 0.01, 0.3, 1.0);
+  }
+  const Twist spin{glm::cross(250.0 * kAlongZ, glm::dvec3(0.05, 0, 0)), 250.0 * kAlongZ};
+  const int rotor = both.add(0.2, glm::dvec3(1e-4), {{2.05, 0, 0}, {1, 0, 0, 0}}, spin);
+  both.join(JointKind::kHinge, rotor, -1, frame_along(kAlongZ, {2, 0, 0}));
+  World with = both.world(), without = alone.world();
+  for (int i = 0; i < 1000; ++i) {
+    with.step({});
+    without.step({});
+    const BodyState state = state_of(with).bodies[static_cast<std::size_t>(rotor)];
+    ASSERT_LT(glm::distance(transform_point(state.pose, {-0.05, 0, 0}), glm::dvec3(2, 0, 0)), 1e-6) << i;
+    ASSERT_LT(state.twist.angular.z, 260.0) << i;
+  }
+  EXPECT_NEAR(state_of(with).joints[0].position, state_of(without).joints[0].position, 1e-9);
+}
+
 // What hangs on a held body by joints takes part in a settling, and nothing else does.
 TEST(Joints, SettleWithTheHandThatHoldsOneOfThem) {
   Linkage link;
