@@ -57,9 +57,10 @@ struct Plan {
   std::string time_step_reason;  ///< which limit decided it
   double stiffness = 0.0;        ///< Eq 7's k of the heaviest fluid, m²/s² (= its sound speed²)
   ParticleModel model = ParticleModel::kCorrected;
-  double fluid_depth = 0.0;   ///< m, the deepest column that volumes of fluid make, one on the other
-  double fluid_drop = 0.0;    ///< m, from the highest fluid to the floor of the domain
-  double driven_speed = 0.0;  ///< m/s, the fastest that a start velocity, keys or a scripted hand make anything
+  double fluid_depth = 0.0;  ///< m, the deepest column that volumes of fluid make, one on the other
+  double fluid_drop = 0.0;   ///< m, from the highest fluid to the floor of the domain
+  double driven_speed =
+      0.0;  ///< m/s, the fastest that a start velocity, keys or a scripted hand make anything
   double sound_share =
       1.0;                 ///< of sound's own limit on the step, what density contrast and light bodies leave
   double tension = 0.0;    ///< share of Eq 7's negative pressure that is kept
