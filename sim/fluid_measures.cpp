@@ -58,7 +58,7 @@ Spread spread_of(std::span<const glm::vec3> places, const glm::dvec3& up, double
 }
 
 double mixing_index(std::span<const glm::vec3> places, std::span<const std::uint8_t> of_it, double spacing) {
-  constexpr double kWide = 3.0;                          // spacings
+  constexpr double kWide = 2.0;                          // spacings
   constexpr double kFull = 0.5 * kWide * kWide * kWide;  // particles
   const double width = kWide * spacing;
   struct Sample {

@@ -18,7 +18,7 @@ struct Spread {
 /// `places`: m; `up`: unit; `spacing`: m. Told apart are places two spacings wide.
 Spread spread_of(std::span<const glm::vec3> places, const glm::dvec3& up, double spacing);
 
-/// Lacey's index of mixing (Lacey 1954): 0 = apart, 1 = as even as chance makes it, of samples three spacings
+/// Lacey's index of mixing (Lacey 1954): 0 = apart, 1 = as even as chance makes it, of samples two spacings
 /// wide that hold a half of a whole one and more. `of_it`: 1 for the particles of the one, 0 for all others.
 /// Not a number where one of the two is missing, or no sample is that full.
 double mixing_index(std::span<const glm::vec3> places, std::span<const std::uint8_t> of_it, double spacing);

@@ -96,8 +96,7 @@ Result<bool> RecordingReader::read_head() {
     return damaged("it has another number of viscosities than of fluids");
   hands_ = HandCoder(head_.scene.grips.size());
   for (std::size_t b = 0; b < head_.scene.bodies.size(); ++b) {
-    if (head_.scene.bodies[b].motion == BodyMotion::kFree)
-      free_bodies_.push_back(static_cast<std::uint32_t>(b));
+    if (moves(head_.scene.bodies[b].motion)) free_bodies_.push_back(static_cast<std::uint32_t>(b));
   }
   return true;
 }

@@ -36,7 +36,7 @@ Result<bool> check_unrecorded(const std::filesystem::path& file) {
 RecordingWriter::RecordingWriter(const Scene& scene, const RecordingOptions& options)
     : options_(options), hands_(scene.grips.size()) {
   for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
-    if (scene.bodies[b].motion == BodyMotion::kFree) free_bodies_.push_back(b);
+    if (moves(scene.bodies[b].motion)) free_bodies_.push_back(b);
   }
 }
 

@@ -17,7 +17,7 @@ constexpr std::size_t kEmptyLists = 2;
 }  // namespace
 
 BodyParts::BodyParts(const Scene& scene, wire::Capabilities agreed) : agreed_(agreed) {
-  for (const Body& body : scene.bodies) sent_.push_back(body.motion == BodyMotion::kFree || body.measured);
+  for (const Body& body : scene.bodies) sent_.push_back(moves(body.motion) || body.measured);
 }
 
 void BodyParts::set(const BodyMessage& message, const std::vector<std::uint64_t>& numbers) {

@@ -24,7 +24,7 @@ constexpr double kMaxMass = 1e9;               ///< kg
 constexpr double kMaxSettle = 60.0;            ///< s
 constexpr std::size_t kMaxSentGoals = 10'000;  ///< of all steps of a task
 
-constexpr std::array kBodyMotionNames{"fixed", "free"};
+constexpr std::array kBodyMotionNames{"fixed", "free", "driven"};
 
 /// What travels: a scene and the spacing of its particles.
 struct PackedScene {
@@ -62,13 +62,21 @@ struct SentGoal {
   std::uint32_t parts = 0;
 };
 
-/// The same of a scene that passes heat, or guides through a task.
+/// What of a body only acts where it is.
+struct BodyActs {
+  std::optional<double> temperature;  ///< °C
+  std::vector<PoseKey> keys;
+  bool repeats = false;
+};
+
+/// The same of a scene that passes heat, drives bodies, joins them, or guides through a task.
 struct ActingScene {
   TexturedScene textured;
-  std::vector<Heat> heats;                          ///< one a fluid
-  std::vector<std::optional<double>> temperatures;  ///< °C, one a body
-  std::vector<TaskStep> task;                       ///< without their goals
-  std::vector<SentGoal> goals;                      ///< of one step after the other
+  std::vector<Heat> heats;     ///< one a fluid
+  std::vector<BodyActs> acts;  ///< one a body
+  std::vector<Joint> joints;
+  std::vector<TaskStep> task;   ///< without their goals
+  std::vector<SentGoal> goals;  ///< of one step after the other
 };
 
 /// Positive definite, as a solid's is.
@@ -141,8 +149,8 @@ void visit(V& v, Body& m, std::size_t meshes) {
   v.vec3_exact("linear", m.twist.linear, kMaxSpeed);
   v.vec3_exact("angular", m.twist.angular, kMaxSpeed);
   visit(v, m.mass);
-  v.rule("mass", m.motion == BodyMotion::kFixed || m.mass.mass > 0.0, "is 0 on a free body");
-  v.rule("inertia_x", m.motion == BodyMotion::kFixed || can_turn(m.mass.inertia),
+  v.rule("mass", m.motion != BodyMotion::kFree || m.mass.mass > 0.0, "is 0 on a free body");
+  v.rule("inertia_x", m.motion != BodyMotion::kFree || can_turn(m.mass.inertia),
          "is not the inertia of a solid");
   v.real64("particle_density", m.particle_density, 0.0, 1e6);
   v.real64("dynamic_viscosity", m.dynamic_viscosity, kFreeSlip, kMaxViscosity);
@@ -157,6 +165,17 @@ void visit(V& v, Body& m, std::size_t meshes) {
 }
 
 template <class V>
+void visit_keys(V& v, const char* name, std::vector<PoseKey>& keys) {
+  double before = -1.0;
+  v.list(name, keys, kMaxPoseKeys, [&before](auto& each, PoseKey& key) {
+    each.real64("time", key.time, 0.0, kMaxTime);
+    each.rule("time", key.time > before, "does not rise");
+    before = key.time;
+    visit_exact(each, key.pose);
+  });
+}
+
+template <class V>
 void visit(V& v, Grip& m, const std::vector<Body>& bodies) {
   v.text("name", m.name, kMaxText);
   v.index("body", m.body, "bodies", bodies.size(), false);
@@ -168,13 +187,7 @@ void visit(V& v, Grip& m, const std::vector<Body>& bodies) {
   v.real64("damping", m.damping, 0.0, 1e4);
   v.real64("rotational_stiffness", m.rotational_stiffness, 0.0, 1e4);
   v.real64("rotational_damping", m.rotational_damping, 0.0, 1e3);
-  double before = -1.0;
-  v.list("hand_motion", m.hand_motion, kMaxPoseKeys, [&before](auto& each, PoseKey& key) {
-    each.real64("time", key.time, 0.0, kMaxTime);
-    each.rule("time", key.time > before, "does not rise");
-    before = key.time;
-    visit_exact(each, key.pose);
-  });
+  visit_keys(v, "hand_motion", m.hand_motion);
 }
 
 template <class V>
@@ -392,19 +405,51 @@ void visit(V& v, TaskStep& m) {
 }
 
 template <class V>
+void visit(V& v, BodyActs& m) {
+  bool given = m.temperature.has_value();
+  double celsius = m.temperature.value_or(0.0);
+  v.flag("keeps", given);
+  v.real64("temperature", celsius, kColdest, kHottest);
+  if (given) m.temperature = celsius;
+  visit_keys(v, "keys", m.keys);
+  v.flag("repeats", m.repeats);
+}
+
+/// At least one of the two is free, and none a probe.
+inline bool can_be_joined(const Scene& scene, const Joint& joint) {
+  bool any_free = false;
+  for (const int index : {joint.body, joint.other}) {
+    if (index < 0 || static_cast<std::size_t>(index) >= scene.bodies.size()) continue;
+    const Body& body = scene.bodies[static_cast<std::size_t>(index)];
+    if (body.point_probe) return false;
+    any_free |= body.motion == BodyMotion::kFree;
+  }
+  return any_free;
+}
+
+template <class V>
 void visit(V& v, ActingScene& m) {
   visit(v, m.textured);
   const Scene& scene = m.textured.looked.settled.measured.packed.scene;
   v.list_as_long("heats", m.heats, "fluids", scene.fluids.size(),
                  [](auto& each, Heat& heat) { visit(each, heat); });
-  v.list_as_long("temperatures", m.temperatures, "bodies", scene.bodies.size(),
-                 [](auto& each, std::optional<double>& kept) {
-                   bool given = kept.has_value();
-                   double celsius = kept.value_or(0.0);
-                   each.flag("given", given);
-                   each.real64("temperature", celsius, kColdest, kHottest);
-                   if (given) kept = celsius;
-                 });
+  v.list_as_long("acts", m.acts, "bodies", scene.bodies.size(),
+                 [](auto& each, BodyActs& body) { visit(each, body); });
+  const std::size_t bodies = scene.bodies.size();
+  v.list("joints", m.joints, kMaxJoints, [&scene, bodies](auto& each, Joint& joint) {
+    each.text("name", joint.name, kMaxText);
+    each.choice("kind", joint.kind, kJointKindNames);
+    each.index("body", joint.body, "bodies", bodies, false);
+    each.index("other", joint.other, "bodies", bodies, true);
+    each.rule("other", joint.other != joint.body, "is the body itself");
+    each.rule("body", can_be_joined(scene, joint), "is a probe's, or of two bodies that no joint moves");
+    visit_exact(each, joint.pose);
+    each.real64("lower", joint.lower, -kNoStop, 0.0);
+    each.real64("upper", joint.upper, 0.0, kNoStop);
+    each.real64("damping", joint.damping, 0.0, 1e6);
+    each.real64("motor_speed", joint.motor_speed, -1000.0, 1000.0);
+    each.real64("motor_limit", joint.motor_limit, 0.0, 1e6);
+  });
   v.list("task", m.task, kMaxTaskSteps, [](auto& each, TaskStep& step) { visit(each, step); });
   v.list("goals", m.goals, kMaxSentGoals, [&scene](auto& each, SentGoal& sent) {
     each.choice("kind", sent.goal.kind, kGoalKindNames);

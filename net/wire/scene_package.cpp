@@ -14,9 +14,9 @@ namespace {
 using wire::Bytes;
 using wire::ByteView;
 
-// A package: its version, how the rest is coded, the rest. A scene that passes heat or guides through a task
-// has the sixth version, else one with textures or light of its own the fifth, else one whose fluids say how
-// they look the fourth, else one that settles before its run the third, else one with gauges or regions the
+// A package: its version, how the rest is coded, the rest. A scene that does more than flow and be held has
+// the sixth version, else one with textures or light of its own the fifth, else one whose fluids say how they
+// look the fourth, else one that settles before its run the third, else one with gauges or regions the
 // second; any other the first, which programs from before these can read. A peer needs the first, the fourth
 // or the fifth.
 constexpr std::uint8_t kVersion = 1;
@@ -98,9 +98,9 @@ Fluid plain(Fluid fluid) {
 }
 
 std::uint8_t version_of(const Scene& scene) {
-  if (!scene.task.empty()) return kActing;
+  if (!scene.task.empty() || !scene.joints.empty()) return kActing;
   for (const Body& body : scene.bodies)
-    if (body.temperature) return kActing;
+    if (body.temperature || !body.keys.empty()) return kActing;
   for (const Fluid& fluid : scene.fluids)
     if (fluid.heat != Heat{}) return kActing;
   for (const Body& body : scene.bodies)
@@ -178,7 +178,8 @@ void fill_acting(const Scene& scene, wire::ActingScene& acting) {
       *limit = wire::finite_limit(*limit);
     acting.heats.push_back(std::move(heat));
   }
-  for (const Body& body : scene.bodies) acting.temperatures.push_back(body.temperature);
+  for (const Body& body : scene.bodies) acting.acts.push_back({body.temperature, body.keys, body.repeats});
+  acting.joints = scene.joints;
   acting.task = scene.task;
   for (TaskStep& step : acting.task) {
     flatten(step.until, acting.goals);
@@ -193,7 +194,12 @@ bool take_acting(wire::ActingScene& acting, Scene& scene) {
     for (double* limit : {&heat.sets_above, &heat.sets_below, &heat.melts_above})
       *limit = wire::open_limit(*limit);
   }
-  for (std::size_t i = 0; i < scene.bodies.size(); ++i) scene.bodies[i].temperature = acting.temperatures[i];
+  for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
+    scene.bodies[i].temperature = acting.acts[i].temperature;
+    scene.bodies[i].keys = std::move(acting.acts[i].keys);
+    scene.bodies[i].repeats = acting.acts[i].repeats;
+  }
+  scene.joints = std::move(acting.joints);
   scene.task = std::move(acting.task);
   std::size_t at = 0;
   for (TaskStep& step : scene.task)
@@ -218,7 +224,12 @@ void keep_seen(Scene& scene) {
   scene.regions.clear();
   scene.task.clear();
   for (Fluid& fluid : scene.fluids) fluid.heat = {};
-  for (Body& body : scene.bodies) body.temperature.reset();
+  scene.joints.clear();
+  for (Body& body : scene.bodies) {
+    body.temperature.reset();
+    body.keys.clear();
+    body.repeats = false;
+  }
   std::vector<int> moved(scene.meshes.size(), -1);
   std::vector<TriangleMesh> kept;
   const auto keep = [&](int& mesh) {
@@ -269,7 +280,7 @@ std::vector<std::string> images_left_behind(const Scene& scene) {
 }
 
 Result<Bytes> pack_scene(const Scene& scene, double spacing, SceneParts parts) {
-  wire::ActingScene acting{{{{{{scene, spacing}}}, scene.fluids}, {}, {}}, {}, {}, {}, {}};
+  wire::ActingScene acting{{{{{{scene, spacing}}}, scene.fluids}, {}, {}}, {}, {}, {}, {}, {}};
   wire::TexturedScene& whole = acting.textured;
   Scene& sent = whole.looked.settled.measured.packed.scene;
   if (parts == SceneParts::kSeen) keep_seen(sent);

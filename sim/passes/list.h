@@ -10,9 +10,9 @@
   WORLD(kRestDensity, rest_density)                     \
   OWN(kSortFluid, sort_fluid)                           \
   OWN(kPlaceBodies, place_bodies)                       \
+  OWN(kHeat, heat)                                      \
   OWN(kDensity, density)                                \
   FUSED(kFluidStress, fluid_stress, kDensity)           \
-  OWN(kHeat, heat)                                      \
   OWN(kPressureForce, pressure_force)                   \
   FUSED(kOneViscosity, one_viscosity, kPressureForce)   \
   FUSED(kPairViscosity, pair_viscosity, kPressureForce) \

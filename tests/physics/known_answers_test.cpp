@@ -121,6 +121,13 @@ INSTANTIATE_TEST_SUITE_P(
         std::vector<Known>{
             {"draft", 0.013, "draft", 0.03}},  // close ones -2.6 ± 0.6, another order of sums 2.3
         std::vector<Known>{{"draft", 0.01, "draft", 0.03}},  // -5.0 %, close ones -1.0 ± 2.4 before them
+        std::vector<Known>{{"slab", 0.008, "heat taken up after 250 ms", 0.03},
+                           {"slab", 0.008, "heat taken up after 1000 ms", 0.03},
+                           {"slab", 0.008, "warmth in the middle after 1000 ms", 0.025},
+                           {"slab", 0.008, "heat that came from nowhere", 1e-5}},
+        std::vector<Known>{{"touching", 0.008, "heat that went over", 0.05},
+                           {"touching", 0.008, "heat lost", 1e-5}},
+        std::vector<Known>{{"cantilever", 0.006, "sag of the end", 0.06}},
         std::vector<Known>{{"sloshing", 0.016, "period", 0.006},
                            {"sloshing", 0.016, "swing kept a period", 0.105}},
         std::vector<Known>{{"sloshing", 0.01, "period", 0.003},

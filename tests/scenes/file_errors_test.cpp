@@ -152,16 +152,16 @@ void each_place(nlohmann::json& value, const std::function<void(nlohmann::json&)
 TEST(FileErrors, OddValuesInEveryPlaceNeverCrash) {
   const TempFolder folder;
   ASSERT_TRUE(test::make_cup().write(folder / "cup.gltf"));
-  nlohmann::json json = test::read_json(folder / "cup.gltf");
+  nlohmann::json file = test::read_json(folder / "cup.gltf");
   const nlohmann::json odd[] = {
       nullptr, -1, 1e300, 4294967296u, "odd", nlohmann::json::array(), nlohmann::json::object(), true};
   // The last samples of long lists tell nothing new.
   std::size_t tried = 0;
-  each_place(json, [&](nlohmann::json& place) {
+  each_place(file, [&](nlohmann::json& place) {
     const nlohmann::json before = place;
     for (const nlohmann::json& value : odd) {
       place = value;
-      test::write_text(folder / "odd.gltf", json.dump());
+      test::write_text(folder / "odd.gltf", file.dump());
       const auto result = load_scene(folder / "odd.gltf");
       if (!result) {
         EXPECT_FALSE(result.error().text().empty());

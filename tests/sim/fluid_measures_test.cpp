@@ -58,8 +58,8 @@ TEST(FluidMeasures, AStepIsUneven) {
 
 TEST(FluidMeasures, WhatLiesApartIsNotMixed) {
   Places apart;
-  apart.add_lattice({0, 0, 0}, {15, 15, 15});
-  apart.add_lattice({15, 0, 0}, {30, 15, 15}, false);
+  apart.add_lattice({0, 0, 0}, {16, 16, 16});
+  apart.add_lattice({16, 0, 0}, {32, 16, 16}, false);
   EXPECT_NEAR(mixing_index(apart.at, apart.of_it, kApart), 0.0, 1e-6);
 }
 

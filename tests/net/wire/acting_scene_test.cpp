@@ -24,6 +24,10 @@ TEST(ActingScene, HeatAndTaskTravelWithAWholeScene) {
   heat.sets_in = 8.0;
   heat.set_times = 50.0;
   scene.bodies[0].temperature = 180.0;
+  scene.bodies[1].motion = BodyMotion::kDriven;
+  scene.bodies[1].keys = {{0.0, scene.bodies[1].pose}, {1.5, {{0.1, 0.2, 0.3}, {1.0, 0.0, 0.0, 0.0}}}};
+  scene.bodies[1].repeats = true;
+  scene.joints.push_back({"lid", JointKind::kHinge, 0, 1, {{0.1, 0.0, 0.0}, {1.0, 0.0, 0.0, 0.0}}, -0.5});
   scene.gauges.push_back({"level", 0, {0.1, 0.2, 0.3}});
   Goal level{GoalKind::kLevel, "level", 0}, leans{GoalKind::kTilt, scene.bodies[1].name, 1};
   level.at_least = 0.2;
@@ -49,13 +53,13 @@ TEST(ActingScene, HeatAndTaskTravelWithAWholeScene) {
 // A goal that says it has more parts than come, and one with a part too many.
 TEST(ActingScene, GoalsThatDoNotFitTheirStepsAreRefused) {
   wire::ActingScene acting{
-      {{{{{test::small_scene(), 0.01}}}, test::small_scene().fluids}, {}, {}}, {}, {}, {}, {}};
+      {{{{{test::small_scene(), 0.01}}}, test::small_scene().fluids}, {}, {}}, {}, {}, {}, {}, {}};
   Scene& scene = acting.textured.looked.settled.measured.packed.scene;
   acting.textured.texcoords.resize(scene.meshes.size());
   acting.textured.materials.resize(scene.bodies.size() + scene.pictures.size());
   acting.heats.resize(scene.fluids.size());
   for (Heat& heat : acting.heats) heat.sets_above = heat.melts_above = heat.sets_below = 0.0;
-  acting.temperatures.resize(scene.bodies.size());
+  acting.acts.resize(scene.bodies.size());
   acting.task.resize(1);
   acting.goals.push_back({{GoalKind::kTilt, "", 0, -1, 0.0, 1.0, {}}, 0});
   const auto error = [&] {

@@ -16,6 +16,14 @@ bool same(const Twist& a, const Twist& b) {
   return a.linear == b.linear && a.angular == b.angular;
 }
 
+void expect_same_keys(const std::vector<PoseKey>& a, const std::vector<PoseKey>& b) {
+  ASSERT_EQ(a.size(), b.size());
+  for (std::size_t k = 0; k < a.size(); ++k) {
+    EXPECT_EQ(a[k].time, b[k].time);
+    EXPECT_TRUE(same(a[k].pose, b[k].pose));
+  }
+}
+
 }  // namespace
 
 #define SAME(field) EXPECT_TRUE(same(a.field, b.field)) << #field
@@ -78,6 +86,8 @@ void expect_same_scene(const Scene& a, const Scene& b) {
     SAME(bodies[i].measured);
     SAME(bodies[i].material);
     SAME(bodies[i].temperature);
+    SAME(bodies[i].repeats);
+    expect_same_keys(a.bodies[i].keys, b.bodies[i].keys);
   }
   for (std::size_t i = 0; i < a.pictures.size(); ++i) {
     SAME(pictures[i].name);
@@ -93,11 +103,20 @@ void expect_same_scene(const Scene& a, const Scene& b) {
     SAME(grips[i].damping);
     SAME(grips[i].rotational_stiffness);
     SAME(grips[i].rotational_damping);
-    ASSERT_EQ(a.grips[i].hand_motion.size(), b.grips[i].hand_motion.size());
-    for (std::size_t k = 0; k < a.grips[i].hand_motion.size(); ++k) {
-      SAME(grips[i].hand_motion[k].time);
-      SAME(grips[i].hand_motion[k].pose);
-    }
+    expect_same_keys(a.grips[i].hand_motion, b.grips[i].hand_motion);
+  }
+  ASSERT_EQ(a.joints.size(), b.joints.size());
+  for (std::size_t i = 0; i < a.joints.size(); ++i) {
+    SAME(joints[i].name);
+    SAME(joints[i].kind);
+    SAME(joints[i].body);
+    SAME(joints[i].other);
+    SAME(joints[i].pose);
+    SAME(joints[i].lower);
+    SAME(joints[i].upper);
+    SAME(joints[i].damping);
+    SAME(joints[i].motor_speed);
+    SAME(joints[i].motor_limit);
   }
   ASSERT_EQ(a.gauges.size(), b.gauges.size());
   for (std::size_t i = 0; i < a.gauges.size(); ++i) {
