@@ -68,10 +68,11 @@ inline constexpr double kMaxEnergy = 1.05;         ///< of Stress::energy_ratio
 inline constexpr double kMaxMomentumError = 1e-5;  ///< of Stress::momentum_error
 
 // Each file of stress/ gives its own.
-std::vector<StressCase> fluid_stress();  ///< materials, gravity, sizes, starts
-std::vector<StressCase> body_stress();   ///< bodies of all weights, contacts
-std::vector<StressCase> joint_stress();  ///< linkages
-std::vector<StressCase> hand_stress();   ///< stiff, fast and many hands; closed vessels
-std::vector<StressCase> long_stress();   ///< soaks: a full report's only
+std::vector<StressCase> fluid_stress();    ///< materials, gravity, sizes, starts
+std::vector<StressCase> body_stress();     ///< bodies of all weights, contacts
+std::vector<StressCase> joint_stress();    ///< linkages
+std::vector<StressCase> setting_stress();  ///< heat and what sets
+std::vector<StressCase> hand_stress();     ///< stiff, fast and many hands; closed vessels
+std::vector<StressCase> long_stress();     ///< soaks: a full report's only
 
 }  // namespace slosh::report
