@@ -120,6 +120,7 @@ TEST_P(ShippedScene, GoesThroughGlbUnchanged) {
                              : name == "pour"  ? make::make_pour()
                              : name == "spin"  ? make::make_spin()
                              : name == "pool"  ? make::make_pool()
+                             : name == "crepe" ? make::make_crepe()
                                                : make::make_probe();
   ASSERT_TRUE(writer.write(folder / (name + ".glb")));
   const auto binary = load_scene(folder / (name + ".glb"));
@@ -137,14 +138,14 @@ TEST_P(ShippedScene, GoesThroughGlbUnchanged) {
 }
 
 INSTANTIATE_TEST_SUITE_P(All, ShippedScene,
-                         ::testing::Values("bucket", "spoon", "pour", "spin", "pool", "probe"),
+                         ::testing::Values("bucket", "spoon", "pour", "spin", "pool", "probe", "crepe"),
                          [](const auto& param) { return std::string(param.param); });
 
 TEST(ShippedScenes, AreListedInOrderWithTitles) {
   const std::vector<SceneEntry> entries = shipped_scenes();
-  ASSERT_EQ(entries.size(), 6u);
-  const char* const names[] = {"bucket", "spoon", "pour", "spin", "pool", "probe"};
-  for (std::size_t i = 0; i < 6; ++i) {
+  ASSERT_EQ(entries.size(), 7u);
+  const char* const names[] = {"bucket", "spoon", "pour", "spin", "pool", "probe", "crepe"};
+  for (std::size_t i = 0; i < entries.size(); ++i) {
     EXPECT_EQ(entries[i].name, names[i]);
     EXPECT_GT(entries[i].title.size(), 10u);
     EXPECT_EQ(entries[i].title.find('\n'), std::string::npos);

@@ -1,0 +1,253 @@
+// A crêpe: batter is stirred, poured into a hot pan, spread, and slides onto a plate once it has set
+// (paper, section 6.5).
+#include <cmath>
+#include <glm/gtc/constants.hpp>
+
+#include "scenes/make/motion.h"
+#include "scenes/make/shipped.h"
+
+namespace slosh::make {
+namespace {
+
+// The bowl stands by the pan's left, and pours over its own lip.
+constexpr double kMixRadius = 0.062;            ///< inner
+constexpr double kMixRim = kMixRadius + kWall;  ///< height of the rim over the underside
+constexpr double kMixBelowRim = 0.030;          ///< of the batter at the start
+/// The milk falls onto it when the scene settles: particles that are too many for the batter's mesh lie on
+/// it.
+constexpr double kMilkAbove = 0.014, kMilkDepth = 0.032, kMilkRadius = 0.027;
+constexpr double kMixHeld = 0.115;  ///< of the underside over the table
+const glm::dvec3 kMixLip(-0.03, kMixHeld + kMixRim, 0.0);
+// A shallow pan whose side leans outward.
+constexpr double kCrepeRadius = 0.105;  ///< inner, of its floor
+constexpr double kCrepeRim = 0.128, kCrepeDepth = 0.024;
+constexpr double kCrepeHeld = 0.05;
+constexpr double kHobTop = 0.04;
+constexpr double kBar = 0.008;
+constexpr double kCrepeDuration = 28.5;
+constexpr double kAtRest = 1.0;      ///< s that all hands hold still
+constexpr double kPourBegins = 2.5;  ///< s that bowl and pan are behind their keys: the stirring takes longer
+
+std::vector<glm::dvec2> bowl_arc(double radius, double from_deg, double to_deg, int steps) {
+  std::vector<glm::dvec2> line;
+  for (int i = 0; i <= steps; ++i) {
+    const double angle = glm::radians(from_deg + (to_deg - from_deg) * i / steps);
+    const double r = radius * std::cos(angle);
+    line.emplace_back(r < 1e-9 ? 0.0 : r, kMixRim + radius * std::sin(angle));
+  }
+  return line;
+}
+
+Solid handle(double from, double to, double height) {
+  return tube({{from, height, 0.0}, {0.5 * (from + to), height, 0.0}, {to, height, 0.0}}, kBar, 24);
+}
+
+Solid mixing_bowl() {
+  std::vector<glm::dvec2> profile = bowl_arc(kMixRadius + kWall, -90.0, 0.0, 20);
+  const std::vector<glm::dvec2> inside = bowl_arc(kMixRadius, 0.0, -90.0, 20);
+  profile.insert(profile.end(), inside.begin(), inside.end());
+  return merged(lathe(round_corners(profile, 0.003, 3), 64), handle(-0.072, -0.15, kMixRim - 0.014));
+}
+
+/// What is in the bowl up to a depth below its rim.
+Solid filling(double below) {
+  const double top = -glm::degrees(std::asin(below / kMixRadius));
+  std::vector<glm::dvec2> profile = bowl_arc(kMixRadius, -90.0, top, 20);
+  profile.emplace_back(0.0, profile.back().y);
+  return lathe(profile, 64);
+}
+
+Solid falling_milk() {
+  const double low = kMixRim - kMixBelowRim + kMilkAbove, high = low + kMilkDepth;
+  return lathe({{0.0, low}, {kMilkRadius, low}, {kMilkRadius, high}, {0.0, high}}, 48);
+}
+
+Solid crepe_pan() {
+  const double rise = kWall + kCrepeDepth;
+  const std::vector<glm::dvec2> profile{
+      {0.0, 0.0},        {kCrepeRadius + kWall, 0.0}, {kCrepeRim + kWall, rise},
+      {kCrepeRim, rise}, {kCrepeRadius, kWall},       {0.0, kWall}};
+  return merged(lathe(round_corners(profile, 0.004, 3), 72), handle(kCrepeRim + 0.004, 0.29, 0.024));
+}
+
+Solid pan_room() {
+  const double low = kWall + 0.001, high = kWall + 0.05;
+  return lathe(
+      {{0.0, low}, {kCrepeRadius, low}, {kCrepeRim, kWall + kCrepeDepth}, {kCrepeRim, high}, {0.0, high}},
+      48);
+}
+
+/// Four blades and a handle, side by side: parts that overlap would be told of.
+Solid whisk() {
+  const double low = 0.008, high = 0.06, wide = 0.022, half = 0.006;
+  const Solid across = box({-wide, low, -half}, {wide, high, half});
+  const Solid front = box({-half, low, half}, {half, high, wide}),
+              back = box({-half, low, -wide}, {half, high, -half});
+  const Solid rod = lathe({{0.0, high}, {half, high}, {half, 0.2}, {0.0, 0.2}}, 24);
+  return merged(merged(across, rod), merged(front, back));
+}
+
+Solid plate() {
+  return lathe(
+      round_corners(
+          {{0.0, 0.0}, {0.08, 0.0}, {0.13, 0.022}, {0.13, 0.036}, {0.12, 0.034}, {0.08, 0.014}, {0.0, 0.014}},
+          0.003, 3),
+      72);
+}
+
+Pose mix_pose(double seconds) {
+  const double time = seconds - kPourBegins;
+  const double angle = glm::radians(follow({{6.6, 0.0}, {10.0, 95.0}, {12.0, 112.0}, {13.4, 0.0}}, time));
+  const double up = follow({{12.4, 0.0}, {14.0, 0.12}}, time);
+  const double aside = follow({{12.6, 0.0}, {14.2, -0.2}}, time);
+  const glm::dquat turn = glm::angleAxis(-angle, glm::dvec3(0.0, 0.0, 1.0));
+  const glm::dvec3 lip(kMixRadius + 0.5 * kWall, kMixRim, 0.0);
+  return {kMixLip - turn * lip + glm::dvec3(0.0, up, aside), turn};
+}
+
+Pose whisk_pose(double seconds) {
+  const double time = seconds - kAtRest;
+  const glm::dvec3 middle = mix_pose(0.0).position + glm::dvec3(0.0, 0.012, 0.0);
+  const double around = turned({1.0, 0.6, 4.7, 9.0}, time);
+  const double out = follow({{1.0, 0.0}, {1.6, 0.013}, {6.3, 0.013}, {6.9, 0.0}}, time);
+  const double up =
+      follow({{0.0, 0.12}, {1.2, 0.006}, {2.4, 0.016}, {3.6, 0.006}, {6.7, 0.006}, {7.9, 0.26}}, time);
+  const double back = follow({{7.1, 0.0}, {8.1, -0.22}}, time);
+  return {middle + glm::dvec3(out * std::cos(around), up, out * std::sin(around) + back),
+          {1.0, 0.0, 0.0, 0.0}};
+}
+
+Pose pan_pose(double seconds) {
+  const double time = seconds - kPourBegins;
+  // Tilted once round, to let the batter run; later up, over to the plate, and on its side.
+  const double lean = glm::radians(follow({{11.5, 0.0}, {12.2, 2.5}, {14.6, 2.5}, {15.4, 0.0}}, time));
+  const double way = turned({11.5, 0.6, 2.4, 1.5 * glm::pi<double>() / 2.5}, time);
+  const double over = glm::radians(follow({{21.0, 0.0}, {23.5, 75.0}}, time));
+  const glm::dquat round = glm::angleAxis(lean, glm::dvec3(std::cos(way), 0.0, std::sin(way)));
+  const glm::dquat turn = glm::angleAxis(over, glm::dvec3(0.0, 0.0, 1.0)) * round;
+  const double up =
+      follow({{11.2, 0.0}, {11.8, 0.03}, {15.0, 0.03}, {15.8, 0.0}, {19.5, 0.0}, {21.0, 0.12}}, time);
+  const double to_plate = follow({{20.0, 0.0}, {21.5, -0.17}}, time);
+  return {{to_plate, kCrepeHeld + up, 0.0}, turn};
+}
+
+nlohmann::json crepe_steps() {
+  const auto of = [](const char* kind, const char* region, double least) {
+    return nlohmann::json{{kind, region}, {"at_least", least}};
+  };
+  const auto all = [](const nlohmann::json& a, const nlohmann::json& b) {
+    return nlohmann::json{{"all", nlohmann::json::array({a, b})}};
+  };
+  nlohmann::json mixed = of("mixing", "bowl_inside", 0.65);
+  mixed["fluid"] = "milk";
+  return {{{"say", "Stir the milk into the batter with the whisk."},
+           {"hint", "Go round the bowl, down to its floor."},
+           {"until", mixed}},
+          {{"say", "Tilt the bowl over its lip, and pour into the pan."},
+           {"hint", "Stop while some is left: the crêpe is to be thin."},
+           {"until", of("mass_kg", "pan_inside", 0.2)}},
+          {{"say", "Tilt the pan round until the batter covers it."},
+           {"until", all(of("spread_m2", "pan_inside", 0.025), of("evenness", "pan_inside", 0.5))}},
+          {{"say", "Let it set."}, {"until", of("set", "pan_inside", 0.9)}},
+          {{"say", "Tilt the pan over the plate until the crêpe slides onto it."},
+           {"until", of("mass_kg", "plate_top", 0.15)}}};
+}
+
+nlohmann::json crepe_batter(const char* name, double viscosity, const glm::dvec3& color) {
+  return {{"slosh", "fluid"},
+          {"fluid", name},
+          {"density_kg_m3", 1050.0},
+          {"viscosity_pa_s", viscosity},
+          {"color", list(color)},
+          {"extinction_per_m", list({250.0, 280.0, 400.0})},
+          {"scattering", 1.0},
+          {"refraction", 1.4},
+          {"gloss", 0.8},
+          {"roughness", 0.4},
+          // As thick as a few particles are, it is some five times as thick as a crêpe, and would take 25
+          // times as long to set.
+          {"heat_capacity_j_kg_k", 3300.0},
+          {"conductivity_w_m_k", 6.0},
+          {"sets_above_c", 75.0},
+          {"sets_in_s", 3.0},
+          {"set_viscosity_pa_s", 40.0},
+          {"set_modulus_pa", 8000.0},
+          {"tears_at", 0.6}};
+}
+
+void hold(SceneWriter& writer, const std::string& name, int node, const Pose& grip, int device,
+          const std::function<Pose(double)>& body_pose) {
+  writer.add_node(name, -1, grip,
+                  {{"slosh", "grip"},
+                   {"stiffness_n_m", 2000.0},
+                   {"damping_n_s_m", 60.0},
+                   {"rotational_stiffness_nm_rad", 60.0},
+                   {"rotational_damping_nm_s_rad", 1.5},
+                   {"device", device}},
+                  node);
+  writer.add_hand(
+      name + "_motion", name, [=](double t) { return compose(body_pose(t), grip); }, kCrepeDuration);
+}
+
+}  // namespace
+
+SceneWriter make_crepe() {
+  SceneWriter writer({{"title", "A crêpe is stirred, poured, spread, baked and served (6.5)"},
+                      {"spacing_min_m", 0.006},
+                      {"spacing_max_m", 0.009},
+                      {"duration_s", kCrepeDuration},
+                      {"still_s", 27.5},
+                      {"settle_s", kSettle},
+                      {"task", crepe_steps()},
+                      {"domain_min_m", list({-0.55, -0.15, -0.4})},
+                      {"domain_max_m", list({0.5, 0.75, 0.4})}});
+  add_table(writer, 0.9, 0.6);
+  const int blue = writer.add_material("blue glaze", {{0.10, 0.22, 0.45, 1.0}, 0.0, 0.25});
+  const int iron = writer.add_material("cast iron", {{0.06, 0.06, 0.07, 1.0}, 0.7, 0.50});
+  const int steel = writer.add_material("steel", {{0.70, 0.70, 0.72, 1.0}, 1.0, 0.30});
+  const int white = writer.add_material("china", {{0.85, 0.84, 0.80, 1.0}, 0.0, 0.20});
+  const int hot = writer.add_material("hob", {{0.05, 0.05, 0.05, 1.0}, 0.0, 0.30, {0.5, 0.06, 0.01}});
+  const int look = writer.add_material("batter", {{0.90, 0.78, 0.42, 1.0}, 0.0, 0.6});
+  const nlohmann::json free_body{
+      {"slosh", "body"}, {"motion", "free"}, {"mass_kg", 0.5}, {"viscosity_pa_s", 0.0}};
+  const int bowl_node =
+      writer.add_node("bowl_body", writer.add_mesh("bowl", mixing_bowl(), blue), mix_pose(0.0), free_body);
+  nlohmann::json pan_body = free_body;
+  pan_body.erase("viscosity_pa_s");
+  pan_body["slip"] = true;
+  pan_body["mass_kg"] = 0.8;
+  pan_body["temperature_c"] = 190.0;
+  const int pan_node =
+      writer.add_node("pan_body", writer.add_mesh("pan", crepe_pan(), iron), pan_pose(0.0), pan_body);
+  nlohmann::json whisk_body = free_body;
+  whisk_body["mass_kg"] = 0.15;
+  const int whisk_node =
+      writer.add_node("whisk_body", writer.add_mesh("whisk", whisk(), steel), whisk_pose(0.0), whisk_body);
+  writer.add_node(
+      "hob", writer.add_mesh("hob", lathe({{0.0, 0.0}, {0.1, 0.0}, {0.1, kHobTop}, {0.0, kHobTop}}, 48), hot),
+      {}, {{"slosh", "body"}, {"viscosity_pa_s", 0.0}});
+  const int plate_node = writer.add_node(
+      "plate", writer.add_mesh("plate", plate(), white), {{-0.31, 0.0, 0.0}, {1.0, 0.0, 0.0, 0.0}},
+      {{"slosh", "body"}, {"viscosity_pa_s", 0.0}, {"temperature_c", 30.0}});
+  const Pose in_bowl = mix_pose(0.0);
+  writer.add_node("batter", writer.add_mesh("batter", filling(kMixBelowRim), look), in_bowl,
+                  crepe_batter("batter", 2.5, {0.92, 0.76, 0.38}));
+  writer.add_node("milk", writer.add_mesh("milk", falling_milk(), look), in_bowl,
+                  crepe_batter("milk", 1.0, {0.95, 0.86, 0.62}));
+  hold(writer, "bowl", bowl_node, {{-0.12, kMixRim - 0.014, 0.0}, {1.0, 0.0, 0.0, 0.0}}, 0, mix_pose);
+  hold(writer, "whisk", whisk_node, {{0.0, 0.17, 0.0}, {1.0, 0.0, 0.0, 0.0}}, 1, whisk_pose);
+  hold(writer, "pan", pan_node, {{0.19, 0.024, 0.0}, {1.0, 0.0, 0.0, 0.0}}, 2, pan_pose);
+  writer.add_node("bowl_inside", writer.add_mesh("bowl_inside", filling(0.0), look), {},
+                  {{"slosh", "region"}}, bowl_node);
+  writer.add_node("pan_inside", writer.add_mesh("pan_inside", pan_room(), look), {}, {{"slosh", "region"}},
+                  pan_node);
+  writer.add_node(
+      "plate_top",
+      writer.add_mesh("plate_top", lathe({{0.0, 0.0141}, {0.13, 0.0141}, {0.13, 0.12}, {0.0, 0.12}}, 48),
+                      look),
+      {}, {{"slosh", "region"}}, plate_node);
+  writer.add_camera({0.16, 0.62, 0.92}, {-0.06, 0.10, 0.0}, 38.0);
+  return writer;
+}
+
+}  // namespace slosh::make
