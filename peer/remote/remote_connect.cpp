@@ -65,6 +65,8 @@ void RemoteLink::on_connected(ConnectionId connection, const KeyFingerprint&, co
   connection_ = connection;
   splitter_ = {};
   scene_bytes_.clear();
+  // The scene of a welcome that was lost with its connection is of no world that is known.
+  if (!greeting_.welcome && world_stage_ == WorldStage::kScene) world_stage_ = WorldStage::kNone;
   greeting_ = {};
   requests_.clear();
   grips_tried_.clear();
