@@ -28,7 +28,7 @@ def table(title):
 
 
 def number(word):
-    word = word.replace("10⁷", "1e7").replace("10⁶", "1e6").replace("10⁵", "1e5").replace("10⁴", "1e4").replace("10³", "1e3")
+    word = word.replace("10⁹", "1e9").replace("10⁷", "1e7").replace("10⁶", "1e6").replace("10⁵", "1e5").replace("10⁴", "1e4").replace("10³", "1e3")
     return float(word.replace("10⁻⁴", "1e-4"))
 
 

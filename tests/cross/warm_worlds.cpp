@@ -29,7 +29,8 @@ Tank warm_tank(ParticleModel model) {
   return shaken(tank);
 }
 
-void compare_heat(const World& cpu, const World& gpu, double degrees, double cures) {
+// `share`: of the heat that bodies gave, and a tenth of it of all.
+void compare_heat(const World& cpu, const World& gpu, double degrees, double cures, double share) {
   std::vector<float> warm[2], cure[2];
   cpu.fill_heat(warm[0], cure[0]);
   gpu.fill_heat(warm[1], cure[1]);
@@ -46,8 +47,8 @@ void compare_heat(const World& cpu, const World& gpu, double degrees, double cur
   expect_at_most("temperature of a particle, degrees", most, degrees);
   expect_at_most("how far it has set, mean", set, cures);
   expect_true("bodies gave heat", a.heat_from_bodies > 0.0);
-  expect_at_most("heat from bodies", std::abs(b.heat_from_bodies / a.heat_from_bodies - 1.0), 1e-5);
-  expect_at_most("heat", std::abs(b.heat / a.heat - 1.0), 1e-5);
+  expect_at_most("heat from bodies", std::abs(b.heat_from_bodies / a.heat_from_bodies - 1.0), share);
+  expect_at_most("heat", std::abs(b.heat / a.heat - 1.0), 0.1 * share);
 }
 
 }  // namespace
@@ -62,13 +63,15 @@ void compare_warm() {
     step(cpu, 0.09);
     step(gpu, 0.09);
     compare_worlds(cpu, gpu, 1e-5);
-    compare_heat(cpu, gpu, 1e-3, 1e-5);
+    compare_heat(cpu, gpu, 1e-3, 1e-5, 1e-6);
     for (int i = 1; i < 60; ++i) {
       step(cpu, 0.09);
       step(gpu, 0.09);
     }
     expect_true("some has set", cpu.diagnostics().cure > 0.01);
-    compare_heat(cpu, gpu, 0.1, 1e-3);
+    // The published model throws particles at the walls: what rounds otherwise flies elsewhere.
+    const bool calm = model == ParticleModel::kCorrected;
+    compare_heat(cpu, gpu, calm ? 0.01 : 5.0, 1e-3, calm ? 1e-6 : 1e-3);
     if (model == ParticleModel::kCorrected) compare_restored("heat and bonds", tank, 0.09);
   }
 }

@@ -91,6 +91,37 @@ TEST(GuidedTask, StepsAreDoneWhenTheWorldSaysSo) {
   EXPECT_NEAR(end.now - end.begun, 0.2, 0.03);
 }
 
+// Oil of 80 °C on as much water of 20: what each goal of a region measures before anything moves.
+TEST(GuidedTask, ARegionTellsMoreThanItsMass) {
+  const auto measured = [](GoalKind kind, int fluid) {
+    Scene scene = falling_tank();
+    scene.fluids.push_back(scene.fluids[0]);
+    scene.fluids[1].name = "oil";
+    scene.fluids[1].heat.temperature = 80.0;
+    scene.fluids[1].heat.starts_set = true;
+    scene.fluid_volumes.push_back(scene.fluid_volumes[0]);
+    scene.fluid_volumes[1].fluid = 1;
+    lab::SceneBuilder shapes;
+    shapes.add_volume(make::box({-0.096, 0.0, -0.048}, {0.096, 0.048, 0.048}));
+    shapes.add_volume(make::box({-0.096, 0.048, -0.048}, {0.096, 0.096, 0.048}));
+    for (int v = 0; v < 2; ++v) {
+      scene.fluid_volumes[static_cast<std::size_t>(v)].mesh = static_cast<int>(scene.meshes.size());
+      scene.meshes.push_back(shapes.scene.meshes[static_cast<std::size_t>(v)]);
+    }
+    Goal goal = at_least(kind, 0, 1e9);
+    goal.other = fluid;
+    scene.task = {step(goal)};
+    return Guided(scene).task.state().measured;
+  };
+  EXPECT_NEAR(measured(GoalKind::kTemperature, -1), 50.0, 1e-3);
+  EXPECT_NEAR(measured(GoalKind::kTemperature, 1), 80.0, 1e-3);
+  EXPECT_NEAR(measured(GoalKind::kSet, -1), 0.5, 1e-6);
+  EXPECT_NEAR(measured(GoalKind::kSet, 0), 0.0, 1e-6);
+  EXPECT_NEAR(measured(GoalKind::kSpread, -1), 0.192 * 0.096, 0.003);
+  EXPECT_GT(measured(GoalKind::kEvenness, 0), 0.95);
+  EXPECT_LT(measured(GoalKind::kMixing, 1), 0.35) << "samples at the middle have both";
+}
+
 TEST(GuidedTask, GoalsGoTogether) {
   Scene scene = falling_tank();
   const Goal slow = [] {

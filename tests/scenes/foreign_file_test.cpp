@@ -155,13 +155,13 @@ TEST(ForeignFile, APictureIsHeldToTheSame) {
         std::string("link.png"), std::string("own.png"), std::string("pipe.png"),
         std::string("%2e%2e/secret.png"), "http://" + ear.at() + "/a.png", "https://" + ear.at() + "/a.png",
         "//" + ear.at() + "/a.png", std::string("data:image/png;base64,AAAA")}) {
-    nlohmann::json json;
+    nlohmann::json file;
     ASSERT_TRUE(test::make_cup().write(outer / "scene/cup.gltf"));
-    json = test::read_json(outer / "scene/cup.gltf");
-    json["images"] = nlohmann::json::array({{{"uri", uri}}});
-    json["textures"] = nlohmann::json::array({{{"source", 0}}});
-    json["materials"][0]["pbrMetallicRoughness"]["baseColorTexture"] = {{"index", 0}};
-    test::write_text(outer / "scene/cup.gltf", json.dump());
+    file = test::read_json(outer / "scene/cup.gltf");
+    file["images"] = nlohmann::json::array({{{"uri", uri}}});
+    file["textures"] = nlohmann::json::array({{{"source", 0}}});
+    file["materials"][0]["pbrMetallicRoughness"]["baseColorTexture"] = {{"index", 0}};
+    test::write_text(outer / "scene/cup.gltf", file.dump());
     const Openings openings({outer / "secret.png", outer / "scene/pipe.png"});
     const Openings own({outer / "scene/own.png"});
     const Result<Scene> scene = load_scene(outer / "scene/cup.gltf");
@@ -212,9 +212,9 @@ TEST(ForeignFile, ABinaryFileIsHeldToTheSame) {
     std::memcpy(&value, bytes.data() + at, 4);
     return value;
   };
-  nlohmann::json json = nlohmann::json::parse(bytes.substr(20, word(12)));
-  json["buffers"].push_back({{"uri", "/etc/passwd"}, {"byteLength", fs::file_size("/etc/passwd")}});
-  std::string text = json.dump();
+  nlohmann::json file = nlohmann::json::parse(bytes.substr(20, word(12)));
+  file["buffers"].push_back({{"uri", "/etc/passwd"}, {"byteLength", fs::file_size("/etc/passwd")}});
+  std::string text = file.dump();
   text.resize((text.size() + 3) / 4 * 4, ' ');
   std::string changed = bytes.substr(0, 12);
   const auto append = [&](std::uint32_t value) { changed.append(reinterpret_cast<const char*>(&value), 4); };
@@ -228,17 +228,17 @@ TEST(ForeignFile, ABinaryFileIsHeldToTheSame) {
 
 TEST(ForeignFile, EveryNameIsCleaned) {
   const TempFolder folder;
-  nlohmann::json json;
+  nlohmann::json file;
   {
     ASSERT_TRUE(test::make_cup({{"title", "a\x1b[2Jcup\u009b31m\n"}}).write(folder / "cup.gltf"));
-    json = test::read_json(folder / "cup.gltf");
+    file = test::read_json(folder / "cup.gltf");
   }
-  test::node_named(json, "cup")["name"] = "c\u202eup\x07";
-  test::node_named(json, "water")["extras"]["fluid"] = "\x1b]0;sour\x07";
-  test::node_named(json, "water")["name"] = "wa\u200bter";
-  test::node_named(json, "hand")["extras"]["grip"] = "`\x1b[31mgrip`";
-  test::node_named(json, "handle")["name"] = "`\x1b[31mgrip`";
-  test::write_text(folder / "cup.gltf", json.dump());
+  test::node_named(file, "cup")["name"] = "c\u202eup\x07";
+  test::node_named(file, "water")["extras"]["fluid"] = "\x1b]0;sour\x07";
+  test::node_named(file, "water")["name"] = "wa\u200bter";
+  test::node_named(file, "hand")["extras"]["grip"] = "`\x1b[31mgrip`";
+  test::node_named(file, "handle")["name"] = "`\x1b[31mgrip`";
+  test::write_text(folder / "cup.gltf", file.dump());
   const Result<Scene> loaded = load_scene(folder / "cup.gltf");
   ASSERT_TRUE(loaded) << loaded.error().text();
   const Scene& scene = loaded.value();
@@ -260,7 +260,7 @@ TEST(ForeignFile, ErrorsCanBeShown) {
     EXPECT_EQ(text_problem(scene.error().text()), "") << clean_text(scene.error().text(), 1000);
   }
   const Result<Scene> unknown = test::load_edited(
-      [](nlohmann::json& json) { test::node_named(json, "cup")["extras"]["mas\x1b_kg"] = 1; });
+      [](nlohmann::json& file) { test::node_named(file, "cup")["extras"]["mas\x1b_kg"] = 1; });
   ASSERT_FALSE(unknown);
   EXPECT_EQ(text_problem(unknown.error().text()), "");
 }

@@ -83,6 +83,23 @@ TEST(TaskOfAScene, ErrorsNameStepAndField) {
   expect_edit_error(with_task({pour({{"hint_aftr_s", 1}})}), {"hint_aftr_s", "Did you mean hint_after_s"});
 }
 
+TEST(TaskOfAScene, ARegionIsAskedForMoreThanItsMass) {
+  const char* const kinds[][2] = {{"spread_m2", "spread of water in in cup: at least 0.5 m²"},
+                                  {"evenness", "evenness of water in in cup: at least 0.5"},
+                                  {"mixing", "mixing of water in in cup: at least 0.5"},
+                                  {"temperature_c", "temperature of water in in cup: at least 0.5 °C"},
+                                  {"set", "set share of water in in cup: at least 0.5"}};
+  for (const auto& [kind, words] : kinds) {
+    const auto scene =
+        test::load_edited(with_task(until({{kind, "in cup"}, {"fluid", "water"}, {"at_least", 0.5}})));
+    ASSERT_TRUE(scene) << scene.error().text();
+    EXPECT_EQ(in_words(scene.value().task[0].until, scene.value()), words);
+  }
+  expect_edit_error(with_task(until({{"mixing", "in cup"}, {"at_least", 0.5}})), {"fluid", "missing"});
+  expect_edit_error(with_task(until({{"set", "nowhere"}, {"at_least", 0.5}})),
+                    {"region 'nowhere'", "in cup"});
+}
+
 TEST(TaskOfAScene, ErrorsOfGoalsSayWhatIsMeant) {
   expect_edit_error(with_task(until({{"mass_kg", "in cub"}, {"at_least", 1}})),
                     {"task[0]: extras.until: extras.mass_kg", "region 'in cub'", "Did you mean in cup?"});
