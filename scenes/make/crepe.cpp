@@ -3,8 +3,8 @@
 #include <cmath>
 #include <glm/gtc/constants.hpp>
 
+#include "scenes/make/kitchen.h"
 #include "scenes/make/motion.h"
-#include "scenes/make/shipped.h"
 
 namespace slosh::make {
 namespace {
@@ -23,39 +23,11 @@ constexpr double kCrepeRadius = 0.105;  ///< inner, of its floor
 constexpr double kCrepeRim = 0.128, kCrepeDepth = 0.024;
 constexpr double kCrepeHeld = 0.05;
 constexpr double kHobTop = 0.04;
-constexpr double kBar = 0.008;
 constexpr double kCrepeDuration = 28.5;
 constexpr double kAtRest = 1.0;      ///< s that all hands hold still
 constexpr double kPourBegins = 2.5;  ///< s that bowl and pan are behind their keys: the stirring takes longer
 
-std::vector<glm::dvec2> bowl_arc(double radius, double from_deg, double to_deg, int steps) {
-  std::vector<glm::dvec2> line;
-  for (int i = 0; i <= steps; ++i) {
-    const double angle = glm::radians(from_deg + (to_deg - from_deg) * i / steps);
-    const double r = radius * std::cos(angle);
-    line.emplace_back(r < 1e-9 ? 0.0 : r, kMixRim + radius * std::sin(angle));
-  }
-  return line;
-}
-
-Solid handle(double from, double to, double height) {
-  return tube({{from, height, 0.0}, {0.5 * (from + to), height, 0.0}, {to, height, 0.0}}, kBar, 24);
-}
-
-Solid mixing_bowl() {
-  std::vector<glm::dvec2> profile = bowl_arc(kMixRadius + kWall, -90.0, 0.0, 20);
-  const std::vector<glm::dvec2> inside = bowl_arc(kMixRadius, 0.0, -90.0, 20);
-  profile.insert(profile.end(), inside.begin(), inside.end());
-  return merged(lathe(round_corners(profile, 0.003, 3), 64), handle(-0.072, -0.15, kMixRim - 0.014));
-}
-
-/// What is in the bowl up to a depth below its rim.
-Solid filling(double below) {
-  const double top = -glm::degrees(std::asin(below / kMixRadius));
-  std::vector<glm::dvec2> profile = bowl_arc(kMixRadius, -90.0, top, 20);
-  profile.emplace_back(0.0, profile.back().y);
-  return lathe(profile, 64);
-}
+constexpr Bowl kMixingBowl{kMixRadius, -0.072, -0.15};
 
 Solid falling_milk() {
   const double low = kMixRim - kMixBelowRim + kMilkAbove, high = low + kMilkDepth;
@@ -67,7 +39,7 @@ Solid crepe_pan() {
   const std::vector<glm::dvec2> profile{
       {0.0, 0.0},        {kCrepeRadius + kWall, 0.0}, {kCrepeRim + kWall, rise},
       {kCrepeRim, rise}, {kCrepeRadius, kWall},       {0.0, kWall}};
-  return merged(lathe(round_corners(profile, 0.004, 3), 72), handle(kCrepeRim + 0.004, 0.29, 0.024));
+  return merged(lathe(round_corners(profile, 0.004, 3), 72), bar(kCrepeRim + 0.004, 0.29, 0.024));
 }
 
 Solid pan_room() {
@@ -175,20 +147,6 @@ nlohmann::json crepe_batter(const char* name, double viscosity, const glm::dvec3
           {"tears_at", 0.6}};
 }
 
-void hold(SceneWriter& writer, const std::string& name, int node, const Pose& grip, int device,
-          const std::function<Pose(double)>& body_pose) {
-  writer.add_node(name, -1, grip,
-                  {{"slosh", "grip"},
-                   {"stiffness_n_m", 2000.0},
-                   {"damping_n_s_m", 60.0},
-                   {"rotational_stiffness_nm_rad", 60.0},
-                   {"rotational_damping_nm_s_rad", 1.5},
-                   {"device", device}},
-                  node);
-  writer.add_hand(
-      name + "_motion", name, [=](double t) { return compose(body_pose(t), grip); }, kCrepeDuration);
-}
-
 }  // namespace
 
 SceneWriter make_crepe() {
@@ -210,8 +168,8 @@ SceneWriter make_crepe() {
   const int look = writer.add_material("batter", {{0.90, 0.78, 0.42, 1.0}, 0.0, 0.6});
   const nlohmann::json free_body{
       {"slosh", "body"}, {"motion", "free"}, {"mass_kg", 0.5}, {"viscosity_pa_s", 0.0}};
-  const int bowl_node =
-      writer.add_node("bowl_body", writer.add_mesh("bowl", mixing_bowl(), blue), mix_pose(0.0), free_body);
+  const int bowl_node = writer.add_node("bowl_body", writer.add_mesh("bowl", kMixingBowl.solid(), blue),
+                                        mix_pose(0.0), free_body);
   nlohmann::json pan_body = free_body;
   pan_body.erase("viscosity_pa_s");
   pan_body["slip"] = true;
@@ -230,14 +188,16 @@ SceneWriter make_crepe() {
       "plate", writer.add_mesh("plate", plate(), white), {{-0.31, 0.0, 0.0}, {1.0, 0.0, 0.0, 0.0}},
       {{"slosh", "body"}, {"viscosity_pa_s", 0.0}, {"temperature_c", 30.0}});
   const Pose in_bowl = mix_pose(0.0);
-  writer.add_node("batter", writer.add_mesh("batter", filling(kMixBelowRim), look), in_bowl,
+  writer.add_node("batter", writer.add_mesh("batter", kMixingBowl.filling(kMixBelowRim), look), in_bowl,
                   crepe_batter("batter", 2.5, {0.92, 0.76, 0.38}));
   writer.add_node("milk", writer.add_mesh("milk", falling_milk(), look), in_bowl,
                   crepe_batter("milk", 1.0, {0.95, 0.86, 0.62}));
-  hold(writer, "bowl", bowl_node, {{-0.12, kMixRim - 0.014, 0.0}, {1.0, 0.0, 0.0, 0.0}}, 0, mix_pose);
-  hold(writer, "whisk", whisk_node, {{0.0, 0.17, 0.0}, {1.0, 0.0, 0.0, 0.0}}, 1, whisk_pose);
-  hold(writer, "pan", pan_node, {{0.19, 0.024, 0.0}, {1.0, 0.0, 0.0, 0.0}}, 2, pan_pose);
-  writer.add_node("bowl_inside", writer.add_mesh("bowl_inside", filling(0.0), look), {},
+  add_held(writer, "bowl", bowl_node, {{-0.12, kMixRim - 0.014, 0.0}, {1.0, 0.0, 0.0, 0.0}}, 0, mix_pose,
+           kCrepeDuration);
+  add_held(writer, "whisk", whisk_node, {{0.0, 0.17, 0.0}, {1.0, 0.0, 0.0, 0.0}}, 1, whisk_pose,
+           kCrepeDuration);
+  add_held(writer, "pan", pan_node, {{0.19, 0.024, 0.0}, {1.0, 0.0, 0.0, 0.0}}, 2, pan_pose, kCrepeDuration);
+  writer.add_node("bowl_inside", writer.add_mesh("bowl_inside", kMixingBowl.filling(0.0), look), {},
                   {{"slosh", "region"}}, bowl_node);
   writer.add_node("pan_inside", writer.add_mesh("pan_inside", pan_room(), look), {}, {{"slosh", "region"}},
                   pan_node);

@@ -2,8 +2,8 @@
 #include <cmath>
 #include <glm/gtc/constants.hpp>
 
+#include "scenes/make/kitchen.h"
 #include "scenes/make/motion.h"
-#include "scenes/make/shipped.h"
 
 namespace slosh::make {
 namespace {
@@ -15,38 +15,11 @@ constexpr double kBowlHeld = 0.21;                ///< of the underside over the
 constexpr double kPanRadius = 0.105;              ///< inner
 constexpr double kPanDepth = 0.040;
 constexpr double kPanHeld = 0.08;
-constexpr double kBarRadius = 0.008;
 /// Where the lip stays while the bowl tilts: the stream lands a little beyond, in the pan's middle.
 const glm::dvec3 kLip(-0.03, kBowlHeld + kBowlRim, 0.0);
 constexpr double kPourDuration = 10.0;
 
-std::vector<glm::dvec2> arc(double radius, double from_deg, double to_deg, int steps) {
-  std::vector<glm::dvec2> line;
-  for (int i = 0; i <= steps; ++i) {
-    const double angle = glm::radians(from_deg + (to_deg - from_deg) * i / steps);
-    const double r = radius * std::cos(angle);
-    line.emplace_back(r < 1e-9 ? 0.0 : r, kBowlRim + radius * std::sin(angle));
-  }
-  return line;
-}
-
-Solid bar(double from, double to, double height) {
-  return tube({{from, height, 0.0}, {0.5 * (from + to), height, 0.0}, {to, height, 0.0}}, kBarRadius, 24);
-}
-
-Solid bowl() {
-  std::vector<glm::dvec2> profile = arc(kBowlRadius + kWall, -90.0, 0.0, 20);
-  const std::vector<glm::dvec2> inside = arc(kBowlRadius, 0.0, -90.0, 20);
-  profile.insert(profile.end(), inside.begin(), inside.end());
-  return merged(lathe(round_corners(profile, 0.003, 3), 64), bar(-0.082, -0.165, kBowlRim - 0.014));
-}
-
-Solid batter() {
-  const double top = -glm::degrees(std::asin(kBelowRim / kBowlRadius));
-  std::vector<glm::dvec2> profile = arc(kBowlRadius, -90.0, top, 20);
-  profile.emplace_back(0.0, profile.back().y);
-  return lathe(profile, 64);
-}
+constexpr Bowl kBowl{kBowlRadius, -0.082, -0.165};
 
 /// What is in the pan, and a little above its rim.
 Solid pan_inside() {
@@ -87,20 +60,6 @@ Pose bowl_pose(double time) {
   return {kLip - turn * lip, turn};
 }
 
-void add_held(SceneWriter& writer, const std::string& name, int node, const Pose& grip, int device,
-              const std::function<Pose(double)>& body_pose) {
-  writer.add_node(name, -1, grip,
-                  {{"slosh", "grip"},
-                   {"stiffness_n_m", 2000.0},
-                   {"damping_n_s_m", 60.0},
-                   {"rotational_stiffness_nm_rad", 60.0},
-                   {"rotational_damping_nm_s_rad", 1.5},
-                   {"device", device}},
-                  node);
-  writer.add_hand(
-      name + "_motion", name, [=](double t) { return compose(body_pose(t), grip); }, kPourDuration);
-}
-
 }  // namespace
 
 SceneWriter make_pour() {
@@ -119,12 +78,12 @@ SceneWriter make_pour() {
   const int look = writer.add_material("batter", {{0.90, 0.78, 0.42, 1.0}, 0.0, 0.6});
   const auto pan_pose = [](double) { return Pose{{0.0, kPanHeld, 0.0}, {1.0, 0.0, 0.0, 0.0}}; };
   const int bowl_node =
-      writer.add_node("bowl_body", writer.add_mesh("bowl", bowl(), blue), bowl_pose(0.0),
+      writer.add_node("bowl_body", writer.add_mesh("bowl", kBowl.solid(), blue), bowl_pose(0.0),
                       {{"slosh", "body"}, {"motion", "free"}, {"mass_kg", 0.5}, {"viscosity_pa_s", 0.0}});
   const int pan_node =
       writer.add_node("pan_body", writer.add_mesh("pan", pan(), iron), pan_pose(0.0),
                       {{"slosh", "body"}, {"motion", "free"}, {"mass_kg", 0.7}, {"viscosity_pa_s", 0.0}});
-  writer.add_node("batter", writer.add_mesh("batter", batter(), look), bowl_pose(0.0),
+  writer.add_node("batter", writer.add_mesh("batter", kBowl.filling(kBelowRim), look), bowl_pose(0.0),
                   {{"slosh", "fluid"},
                    {"density_kg_m3", 1100.0},
                    {"viscosity_pa_s", 1.5},
@@ -134,8 +93,9 @@ SceneWriter make_pour() {
                    {"refraction", 1.4},
                    {"gloss", 0.8},
                    {"roughness", 0.4}});
-  add_held(writer, "bowl", bowl_node, {{-0.13, kBowlRim - 0.014, 0.0}, {1.0, 0.0, 0.0, 0.0}}, 0, bowl_pose);
-  add_held(writer, "pan", pan_node, {{0.17, 0.036, 0.0}, {1.0, 0.0, 0.0, 0.0}}, 1, pan_pose);
+  add_held(writer, "bowl", bowl_node, {{-0.13, kBowlRim - 0.014, 0.0}, {1.0, 0.0, 0.0, 0.0}}, 0, bowl_pose,
+           kPourDuration);
+  add_held(writer, "pan", pan_node, {{0.17, 0.036, 0.0}, {1.0, 0.0, 0.0, 0.0}}, 1, pan_pose, kPourDuration);
   writer.add_node("pan_inside", writer.add_mesh("pan_inside", pan_inside(), look), {}, {{"slosh", "region"}},
                   pan_node);
   writer.add_camera({0.21, 0.60, 0.84}, {0.01, 0.195, 0.0}, 35.0);
