@@ -6,7 +6,7 @@
 #include <memory>
 #include <utility>
 
-#include "net/wire/scene_fields.h"
+#include "net/wire/acting_fields.h"
 
 namespace slosh {
 namespace {

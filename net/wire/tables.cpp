@@ -1,9 +1,9 @@
 // Which tables WIRE_FORMAT.md has.
 #include <functional>
 
+#include "net/wire/acting_fields.h"
 #include "net/wire/all_messages.h"
 #include "net/wire/describe.h"
-#include "net/wire/scene_fields.h"
 
 namespace slosh::wire {
 namespace {

@@ -1,7 +1,7 @@
 // Heat and guided tasks on their way in a scene's package.
 #include <gtest/gtest.h>
 
-#include "net/wire/scene_fields.h"
+#include "net/wire/acting_fields.h"
 #include "net/wire/scene_package.h"
 #include "tests/net/wire/package_kit.h"
 #include "tests/net/wire/same_scene.h"
