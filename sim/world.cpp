@@ -143,54 +143,56 @@ Result<bool> World::share_particles() {
   return impl_->engine->share();
 }
 
-void World::fill_pressures(std::vector<float>& out) const {
-  const Impl& w = *impl_;
-  out.assign(w.fluid_count, std::numeric_limits<float>::quiet_NaN());
+namespace {
+
+/// f(id, particles, i) for each fluid particle that is in the world; for none when the GPU failed.
+template <class F>
+void for_each_by_id(const World::Impl& w, F&& f) {
   ParticleState particles;
   ImpulseSums walls;
   if (!w.engine->save(particles, walls)) return;
   for (std::size_t i = 0; i < particles.size(); ++i) {
     const std::size_t id = particles.id[i];
-    if (id >= out.size() || particles.key[i] == w.constants.grid.retired_key()) continue;
+    if (id >= w.fluid_count || particles.key[i] == w.constants.grid.retired_key()) continue;
+    f(id, particles, i);
+  }
+}
+
+constexpr float kNotThere = std::numeric_limits<float>::quiet_NaN();
+
+}  // namespace
+
+void World::fill_pressures(std::vector<float>& out) const {
+  const Impl& w = *impl_;
+  out.assign(w.fluid_count, kNotThere);
+  for_each_by_id(w, [&](std::size_t id, const ParticleState& particles, std::size_t i) {
     if (w.plan().has(PassId::kPressureSolve)) {
       out[id] = particles.solved[i];
-      continue;
+      return;
     }
     // The volume is what the density pass left; a bulk-damped pressure is not kept.
     const ParticleKind& kind = w.constants.kinds[w.fluid_of[id]];
     const float compression = w.constants.rest_volume / particles.volume[i] - 1.0f;
     out[id] = static_cast<float>(w.plan().stiffness) * kind.pressing_density * compression;
-  }
+  });
 }
 
 void World::fill_heat(std::vector<float>& temperatures, std::vector<float>& cures) const {
   const Impl& w = *impl_;
-  for (std::vector<float>* out : {&temperatures, &cures})
-    out->assign(w.fluid_count, std::numeric_limits<float>::quiet_NaN());
-  ParticleState particles;
-  ImpulseSums walls;
-  if (!w.engine->save(particles, walls)) return;
+  for (std::vector<float>* out : {&temperatures, &cures}) out->assign(w.fluid_count, kNotThere);
   const bool passed = w.plan().has(PassId::kHeat);
-  for (std::size_t i = 0; i < particles.size(); ++i) {
-    const std::size_t id = particles.id[i];
-    if (id >= w.fluid_count || particles.key[i] == w.constants.grid.retired_key()) continue;
+  for_each_by_id(w, [&](std::size_t id, const ParticleState& particles, std::size_t i) {
     const Heat& start = w.scene.fluids[w.fluid_of[id]].heat;
     temperatures[id] = passed ? particles.temperature[i] : static_cast<float>(start.temperature);
     cures[id] = passed ? particles.cure[i] : start.starts_set ? 1.0f : 0.0f;
-  }
+  });
 }
 
 void World::fill_velocities(std::vector<glm::vec3>& out) const {
-  const Impl& w = *impl_;
-  out.assign(w.fluid_count, glm::vec3(std::numeric_limits<float>::quiet_NaN()));
-  ParticleState particles;
-  ImpulseSums walls;
-  if (!w.engine->save(particles, walls)) return;
-  for (std::size_t i = 0; i < particles.size(); ++i) {
-    const std::size_t id = particles.id[i];
-    if (id >= out.size() || particles.key[i] == w.constants.grid.retired_key()) continue;
+  out.assign(impl_->fluid_count, glm::vec3(kNotThere));
+  for_each_by_id(*impl_, [&](std::size_t id, const ParticleState& particles, std::size_t i) {
     out[id] = {particles.vx[i], particles.vy[i], particles.vz[i]};
-  }
+  });
 }
 
 Result<bool> World::save(std::vector<std::uint8_t>& out) const {

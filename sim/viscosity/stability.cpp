@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "sim/math/lattice.h"
 #include "sim/model.h"
 #include "sim/passes/implicit_viscosity/implicit.h"
 #include "sim/viscosity/artificial_viscosity.h"
@@ -29,16 +30,8 @@ constexpr double kOfAnEdge = 0.7;
 // still neighbours is μ/ρ · this / spacing².
 template <class Kernel>
 double lattice_viscosity_sum(double ratio, const DragShape<double>& shape) {
-  const int reach = static_cast<int>(std::ceil(ratio));
   double sum = 0.0;
-  for (int x = -reach; x <= reach; ++x) {
-    for (int y = -reach; y <= reach; ++y) {
-      for (int z = -reach; z <= reach; ++z) {
-        const double r = std::sqrt(static_cast<double>(x * x + y * y + z * z));
-        if (r > 0.0 && r < ratio) sum += shape(Kernel::laplacian(r, ratio));
-      }
-    }
-  }
+  for_each_in_lattice(ratio, [&](int, int, int, double r) { sum += shape(Kernel::laplacian(r, ratio)); });
   return Kernel::scale(ratio) * sum;
 }
 

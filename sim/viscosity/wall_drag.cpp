@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "sim/fluid_extremes.h"
+#include "sim/math/lattice.h"
 #include "sim/model.h"
 #include "sim/viscosity/artificial_viscosity.h"
 #include "sim/viscosity/drag_shape.h"
@@ -13,24 +14,7 @@
 namespace slosh {
 namespace {
 
-constexpr int kPlaces = 10;  // along each axis, where a particle stands over a layer
-
-// Calls f(x, z, r) for the neighbours of a plane square lattice `height` spacings away, at each of those
-// places.
-template <class F>
-void for_each_in_layer(double height, double ratio, F&& f) {
-  const int reach = static_cast<int>(std::ceil(ratio)) + 1;
-  for (int place = 0; place < kPlaces * kPlaces; ++place) {
-    const double x0 = static_cast<double>(place / kPlaces) / kPlaces;
-    const double z0 = static_cast<double>(place % kPlaces) / kPlaces;
-    for (int i = -reach; i <= reach; ++i) {
-      for (int k = -reach; k <= reach; ++k) {
-        const double x = i + x0, z = k + z0, r = std::sqrt(x * x + z * z + height * height);
-        if (r > 0.0 && r < ratio) f(x, z, r);
-      }
-    }
-  }
-}
+constexpr int kPlaces = kPlacesOverLayer;
 
 // Σ shape d̂ d̂ᵀ of a plane square lattice `height` spacings away: along it (one direction) and across it, mean
 // over where the particle stands over the lattice.

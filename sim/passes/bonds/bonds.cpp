@@ -1,19 +1,12 @@
 #include "sim/passes/bonds/bonds.h"
 
-#include <cmath>
+#include "sim/math/lattice.h"
 
 namespace slosh {
 
 double bond_lengths(double spacing) {
   double lengths = 0.0;  // spacings
-  for (int x = -2; x <= 2; ++x) {
-    for (int y = -2; y <= 2; ++y) {
-      for (int z = -2; z <= 2; ++z) {
-        const double r = std::sqrt(static_cast<double>(x * x + y * y + z * z));
-        if (r < static_cast<double>(kBondReach)) lengths += r;
-      }
-    }
-  }
+  for_each_in_lattice(static_cast<double>(kBondReach), [&](int, int, int, double r) { lengths += r; });
   return lengths * spacing;
 }
 

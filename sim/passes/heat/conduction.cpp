@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "sim/math/lattice.h"
 #include "sim/passes/bonds/bonds.h"
 #include "sim/passes/pressure_force/pair_pressure.h"
 #include "sim/plan.h"
@@ -11,35 +12,19 @@
 namespace slosh {
 namespace {
 
-// Σ f(x, r) over a cubic lattice within `ratio` spacings, the particle itself left out.
+// Σ f(x, r) over a cubic lattice.
 template <class F>
 double lattice_sum(double ratio, F&& f) {
-  const int reach = static_cast<int>(std::ceil(ratio));
   double sum = 0.0;
-  for (int x = -reach; x <= reach; ++x) {
-    for (int y = -reach; y <= reach; ++y) {
-      for (int z = -reach; z <= reach; ++z) {
-        const double r = std::sqrt(static_cast<double>(x * x + y * y + z * z));
-        if (r > 0.0 && r < ratio) sum += f(x, r);
-      }
-    }
-  }
+  for_each_in_lattice(ratio, [&](int x, int, int, double r) { sum += f(x, r); });
   return sum;
 }
 
 // Σ (h − r), spacings, over a plane square lattice `height` away, mean over where one stands over it.
 double plane_sum(double height, double ratio) {
-  constexpr int kPlaces = 10;
-  const int reach = static_cast<int>(std::ceil(ratio)) + 1;
   double sum = 0.0;
-  for (int place = 0; place < kPlaces * kPlaces; ++place) {
-    const double x0 = static_cast<double>(place / kPlaces) / kPlaces;
-    const double z0 = static_cast<double>(place % kPlaces) / kPlaces;
-    for (int i = -reach; i <= reach; ++i) {
-      for (int k = -reach; k <= reach; ++k) sum += std::max(ratio - std::hypot(i + x0, k + z0, height), 0.0);
-    }
-  }
-  return sum / (kPlaces * kPlaces);
+  for_each_in_layer(height, ratio, [&](double, double, double r) { sum += ratio - r; });
+  return sum / (kPlacesOverLayer * kPlacesOverLayer);
 }
 
 // What a conductivity of 1 passes on in a lattice for each unit of h − r, spacings.
