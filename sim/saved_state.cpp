@@ -1,17 +1,15 @@
 #include "sim/saved_state.h"
 
-#include <bit>
 #include <cmath>
 #include <cstdio>
-#include <cstring>
 #include <string>
 #include <utility>
+
+#include "sim/state_bytes.h"
 
 namespace slosh {
 
 namespace {
-
-static_assert(std::endian::native == std::endian::little);
 
 constexpr std::uint32_t kMagic = 0x54535753;  // "SWST"
 constexpr std::uint32_t kVersion = 7;
@@ -19,68 +17,8 @@ constexpr std::uint32_t kBeforeJoints = 6;  // without SavedState::joints, and r
 constexpr std::uint32_t kBeforeBroken = 5;  // without ParticleState::broken, and read as well: none was
 constexpr std::uint32_t kBeforeGone = 4;    // without RigidBody::gone, and read as well: no body was
 constexpr std::uint32_t kBeforeStiffness = 3;  // without grip_stiffness, and read as well: it was the scene's
-constexpr double kLargest = 1.0e9;             // beyond this no position, speed or force of a body is one
 constexpr std::int64_t kMaxOfImpulse = std::int64_t{1} << 62;
 const char kWhere[] = "saved world";
-
-class Sink {
- public:
-  explicit Sink(std::vector<std::uint8_t>& out) : out_(out) {}
-  static constexpr bool kReads = false;
-
-  template <class T>
-  void raw(const T& value) {
-    column(std::span<const T>(&value, 1));
-  }
-  template <class T>
-  void column(std::span<const T> values) {
-    const std::size_t at = out_.size();
-    out_.resize(at + values.size_bytes());
-    if (!values.empty()) std::memcpy(out_.data() + at, values.data(), values.size_bytes());
-  }
-  void real(double value) { raw(value); }
-
- private:
-  std::vector<std::uint8_t>& out_;
-};
-
-// Reads as long as there is something; after the first problem everything stays as it was.
-class Source {
- public:
-  explicit Source(std::span<const std::uint8_t> in) : in_(in) {}
-  static constexpr bool kReads = true;
-
-  template <class T>
-  void raw(T& value) {
-    column(std::span<T>(&value, 1));
-  }
-  template <class T>
-  void column(std::span<T> values) {
-    if (!problem_.empty()) return;
-    if (in_.size() - at_ < values.size_bytes()) return fail("it ends too early");
-    if (!values.empty()) std::memcpy(values.data(), in_.data() + at_, values.size_bytes());
-    at_ += values.size_bytes();
-  }
-  // A number of the bodies' side: finite and not absurd.
-  void real(double& value) {
-    double read = 0.0;
-    raw(read);
-    if (!problem_.empty()) return;
-    if (!(std::abs(read) <= kLargest)) return fail("it holds a number that is not finite or far too large");
-    value = read;
-  }
-  void fail(std::string problem) {
-    if (problem_.empty()) problem_ = std::move(problem);
-  }
-  bool ok() const { return problem_.empty(); }
-  const std::string& problem() const { return problem_; }
-  std::size_t left() const { return in_.size() - at_; }
-
- private:
-  std::span<const std::uint8_t> in_;
-  std::size_t at_ = 0;
-  std::string problem_;
-};
 
 template <class S, class V>
 void three(S& s, V& v) {
@@ -140,7 +78,7 @@ void joint_state(S& s, J& joint, M& mean) {
 }
 
 // Pairs of bodies that there are, in order: the solve looks them up.
-void read_impulses(Source& s, std::uint64_t bodies, std::vector<KeptImpulse>& impulses) {
+void read_impulses(StateSource& s, std::uint64_t bodies, std::vector<KeptImpulse>& impulses) {
   std::uint32_t count = 0;
   s.raw(count);
   // What is there decides how much is allocated.
@@ -178,7 +116,7 @@ std::size_t bytes_a_particle(const Plan& plan) {
 }
 
 // Of each particle, by id, whether it has set and its bonds.
-void write_bonds(Sink& s, const BondTable& table) {
+void write_bonds(StateSink& s, const BondTable& table) {
   for (std::size_t id = 0; id < table.count.size(); ++id) {
     s.raw(table.set[id]);
     s.raw(table.count[id]);
@@ -190,7 +128,7 @@ void write_bonds(Sink& s, const BondTable& table) {
   }
 }
 
-void read_bonds(Source& s, std::size_t particles, float longest, BondTable& table) {
+void read_bonds(StateSource& s, std::size_t particles, float longest, BondTable& table) {
   table.resize(particles);
   for (std::size_t id = 0; id < particles && s.ok(); ++id) {
     s.raw(table.set[id]);
@@ -211,7 +149,7 @@ void read_bonds(Source& s, std::size_t particles, float longest, BondTable& tabl
   }
 }
 
-void write_frame(Sink& s, const StateFrame& f) {
+void write_frame(StateSink& s, const StateFrame& f) {
   for (const std::uint64_t n :
        {f.fluid_particles, f.probes, f.body_particles, f.bodies, f.grips, f.fluids, f.scene}) {
     s.raw(n);
@@ -225,7 +163,7 @@ std::string differs(const char* what, double saved, double here) {
   return text;
 }
 
-void read_frame(Source& s, const StateFrame& here) {
+void read_frame(StateSource& s, const StateFrame& here) {
   const auto count = [&](const char* what, std::uint64_t wanted) {
     std::uint64_t n = 0;
     s.raw(n);
@@ -254,7 +192,7 @@ void read_frame(Source& s, const StateFrame& here) {
 }
 
 // Every particle once at most, probes all, and those in the world where they can be.
-void check_particles(Source& s, const StateFrame& frame, const RunConstants& constants,
+void check_particles(StateSource& s, const StateFrame& frame, const RunConstants& constants,
                      const std::vector<std::uint8_t>& gone, ParticleState& p) {
   const std::uint64_t total = frame.fluid_particles + frame.probes;
   std::vector<bool> seen(total, false);
@@ -298,7 +236,7 @@ void write_state(const StateFrame& frame, const RunConstants& constants, const S
   const ParticleState& p = state.particles;
   out.reserve(out.size() + bytes_a_particle(constants.plan) * p.size() +
               400 * (state.bodies.size() + state.grips.size()) + 1024);
-  Sink s(out);
+  StateSink s(out);
   s.raw(kMagic);
   s.raw(kVersion);
   write_frame(s, frame);
@@ -336,7 +274,7 @@ void write_state(const StateFrame& frame, const RunConstants& constants, const S
 
 Result<bool> read_state(std::span<const std::uint8_t> bytes, const StateFrame& frame,
                         const RunConstants& constants, SavedState& state) {
-  Source s(bytes);
+  StateSource s(bytes);
   std::uint32_t magic = 0;
   std::uint32_t version = 0;
   s.raw(magic);

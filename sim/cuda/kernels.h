@@ -112,14 +112,12 @@ SLOSH_HD void for_each_pack(F&& f, Sets&&... sets) {
   f(std::integral_constant<Pack, Pack::kKey>{}, sets.key...);
 }
 
-/// Those that only some plans have, and which.
-constexpr bool sometimes(Pack pack) {
-  return pack == Pack::kSolved || pack == Pack::kHeat;
-}
+/// Which plans have a pack: those that need its columns.
 constexpr ColumnNeed need_of(Pack pack) {
-  return pack == Pack::kSolved ? ColumnNeed::kSolved
-         : pack == Pack::kHeat ? ColumnNeed::kHeat
-                               : ColumnNeed::kAlways;
+  for (const ColumnInfo& column : kFluidColumns) {
+    if (column.pack == pack) return column.need;
+  }
+  return ColumnNeed::kAlways;
 }
 /// Whether a sort gathers a pack: when it carries one of its columns.
 constexpr bool carried(Pack pack) {

@@ -129,7 +129,7 @@ __global__ void gather_fluid_kernel(StepConstants c, FluidView from, SortView so
   const std::uint32_t place = place_of(p, key, c.grid.retired_key(), to.cells.start, sort);
   for_each_pack(
       [&](auto pack, const auto* values, auto* gathered) {
-        if constexpr (sometimes(pack)) {
+        if constexpr (need_of(pack) != ColumnNeed::kAlways) {
           if (values) gathered[place] = values[p];
         } else if constexpr (carried(pack)) {
           gathered[place] = values[p];
