@@ -72,16 +72,29 @@ Result<bool> Host::carry_out(const HostCommand& command) {
       return true;
     case HostAction::kReset:
       return reset();
-    case HostAction::kViscosity:
-      return world_.set_viscosity(command.index, command.value);
-    case HostAction::kGravityScale:
-      return world_.set_gravity_scale(command.value);
-    case HostAction::kGripStiffness: {
-      const Result<bool> set = world_.set_grip_stiffness(command.index, command.value);
-      return set;
-    }
+    default:
+      return change_world(world_, command);
   }
-  return Error{"command", "is unknown", ""};
+}
+
+Result<bool> change_world(World& world, const HostCommand& command) {
+  switch (command.action) {
+    case HostAction::kViscosity:
+      return world.set_viscosity(command.index, command.value);
+    case HostAction::kGravityScale:
+      return world.set_gravity_scale(command.value);
+    case HostAction::kGripStiffness:
+      return world.set_grip_stiffness(command.index, command.value);
+    case HostAction::kAppear:
+      return world.appear(command.index);
+    case HostAction::kTakeAway:
+      return world.take_away(command.index, static_cast<int>(command.value) - 1);
+    case HostAction::kPause:
+    case HostAction::kContinue:
+    case HostAction::kReset:
+      break;
+  }
+  return true;
 }
 
 Result<bool> Host::reset() {

@@ -34,7 +34,8 @@ class GoneBodies {
     found_.clear();
     for (std::size_t b = 0; b < now.bodies.size(); ++b) {
       const BodyState& body = now.bodies[b];
-      if (body.gone && !known_[b]) found_.push_back({static_cast<int>(b), now.time, body.center_of_mass});
+      if (body.gone && !body.away() && !known_[b])
+        found_.push_back({static_cast<int>(b), now.time, body.center_of_mass});
       known_[b] = body.gone;
     }
     return found_;

@@ -107,6 +107,23 @@ const Goal* GuidedTask::asked_of(const Goal& goal) const {
   return asked_of(goal.parts.front());
 }
 
+double GuidedTask::spilled(const World& world) {
+  const Measurement& now = instruments_.measure(world);
+  const Snapshot& picture = instruments_.picture();
+  std::vector<char> kept(picture.fluid_index.size(), 0);
+  for (std::size_t r = 0; r < scene_.regions.size(); ++r)
+    for (const std::uint32_t i : instruments_.inside(r)) kept[i] = 1;
+  const double volume = std::pow(instruments_.spacing(), 3);
+  double mass = 0.0;
+  for (std::size_t i = 0; i < kept.size(); ++i)
+    if (!kept[i] && picture.fluid_index[i] != 255)
+      mass += volume * scene_.fluids[picture.fluid_index[i]].rest_density;
+  if (now.fluid.particles > 0)
+    mass +=
+        static_cast<double>(now.fluid.retired) * now.fluid.mass / static_cast<double>(now.fluid.particles);
+  return mass;
+}
+
 void GuidedTask::look(const World& world) {
   const TaskStep& step = scene_.task[state_.done.size()];
   world.fill(bodies_);
@@ -122,6 +139,7 @@ void GuidedTask::look(const World& world) {
   if (!is_met || state_.held + kRounding < step.hold) return;
   const double took = state_.now - state_.begun;
   state_.done.push_back({took, step.within > 0.0 && took > step.within});
+  for (const Goal* leaf : leaves_of(step.until)) state_.done.back().measured.push_back(measure(*leaf));
   state_.begun = state_.now;
   state_.held = 0.0;
   state_.asked = nullptr;

@@ -16,6 +16,7 @@ struct TaskState {
   struct Done {
     double took = 0.0;  ///< s
     bool late = false;
+    std::vector<double> measured{};  ///< of its goal's leaves (leaves_of), as it was met
   };
   std::vector<Done> done;  ///< the steps that are, in order
   double begun = 0.0;      ///< simulated s at which the step after them began
@@ -38,6 +39,8 @@ class GuidedTask {
   /// back begins the task anew.
   bool follow(const World& world);
   const TaskState& state() const { return state_; }
+  /// kg of fluid that is in no region of the scene, or has left the world (by its mean particle's mass).
+  double spilled(const World& world);
 
  private:
   double measure(const Goal& goal) const;

@@ -20,6 +20,8 @@ enum class HostAction : std::uint8_t {
   kViscosity,      ///< index: fluid; value: Pa·s
   kGravityScale,   ///< value: times the scene's, 0–2
   kGripStiffness,  ///< index: grip; value: times the scene's (World::set_grip_stiffness)
+  kAppear,         ///< index: thing (World::appear)
+  kTakeAway,  ///< index: thing; value: 1 + the region in which it goes, 0 = everywhere (World::take_away)
 };
 
 struct HostCommand {
@@ -36,6 +38,9 @@ struct HostState {
   std::vector<double> viscosities;     ///< Pa·s, one a fluid
   std::vector<double> grip_stiffness;  ///< times the scene's, one a grip
 };
+
+/// Does to a world what a command asks, but for pause, continue and reset, which are its host's: nothing.
+Result<bool> change_world(World& world, const HostCommand& command);
 
 /// The switches of a world of so many fluids; who runs it knows whether it stands and how often it was reset.
 HostState state_of(const World& world, std::size_t fluids, bool paused, std::uint32_t run);

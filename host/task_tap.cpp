@@ -16,13 +16,63 @@ std::string measured_text(const TaskState& state, const Scene& scene) {
          format(" %.3g%s%s, wanted ", state.measured, *unit ? " " : "", unit) + limits_in_words(goal);
 }
 
+constexpr double kAskEvery = 0.5;  // simulated s, where something has to wait
+
 }  // namespace
+
+void TaskTap::follow(const World& world) {
+  if (!task_.follow(world) && open_.empty()) return;
+  std::unique_lock lock(mutex_);
+  state_ = task_.state();
+  const std::size_t done = state_.done.size();
+  if (done < steps_acted_) {
+    steps_acted_ = 0;
+    open_.clear();
+    hands_.clear();
+    refused_.clear();
+    asked_ = false;
+    ask_again_ = 0.0;
+    begun_ += 1;
+  }
+  for (; steps_acted_ < done; ++steps_acted_) {
+    const std::vector<TaskAct>& then = scene_.task[steps_acted_].then;
+    open_.insert(open_.end(), then.begin(), then.end());
+  }
+  while (!open_.empty() && open_.front().kind == TaskActKind::kHandTakes) {
+    hands_.push_back(
+        {static_cast<std::uint32_t>(open_.front().thing), static_cast<std::uint32_t>(open_.front().other)});
+    open_.erase(open_.begin());
+  }
+  if (open_.empty() || asked_ || world.time() < ask_again_) return;
+  // What is refused is asked for again: a place may come free.
+  asked_ = true;
+  ask_again_ = world.time() + kAskEvery;
+  const TaskAct next = open_.front();
+  lock.unlock();
+  const HostAction action = next.kind == TaskActKind::kAppears ? HostAction::kAppear : HostAction::kTakeAway;
+  ask_({action, static_cast<std::uint32_t>(next.thing), 1.0 + next.other},
+       [this, of = begun_](const Result<bool>& answer) { answered(of, answer); });
+}
+
+void TaskTap::answered(std::uint32_t begun, const Result<bool>& answer) {
+  const std::lock_guard lock(mutex_);
+  if (begun != begun_ || open_.empty()) return;
+  asked_ = false;
+  // What cannot be taken away is not there, or stays for good: there is nothing to wait for.
+  const bool waits = !answer && open_.front().kind == TaskActKind::kAppears;
+  refused_ = waits ? answer.error().text() : std::string();
+  if (waits) return;
+  open_.erase(open_.begin());
+  ask_again_ = 0.0;
+}
 
 TaskLines TaskTap::lines() const {
   const std::lock_guard lock(mutex_);
   const std::size_t steps = scene_.task.size();
   const std::size_t done = state_.done.size();
   TaskLines lines;
+  lines.hands = hands_;
+  lines.hint = refused_;
   if (done == steps) {
     lines.title = "done";
     double took = 0.0;
@@ -40,7 +90,7 @@ TaskLines TaskTap::lines() const {
   lines.now = measured_text(state_, scene_);
   if (state_.held > 0.0 && step.hold > 0.0)
     lines.now += format("%s%.1f of %.1f s held", lines.now.empty() ? "" : "; ", state_.held, step.hold);
-  if (taken >= step.hint_after) lines.hint = step.hint;
+  if (lines.hint.empty() && taken >= step.hint_after) lines.hint = step.hint;
   return lines;
 }
 

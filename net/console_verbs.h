@@ -27,6 +27,8 @@ enum class ConsoleVerb : std::uint8_t {
   kContinue,
   kReset,
   kSet,
+  kBring,
+  kRemove,
   kStatus,
   kLog,
   kQuit,

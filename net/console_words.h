@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "scenes/scene.h"
 #include "sim/math/result.h"
 
 namespace slosh {
@@ -60,6 +61,13 @@ std::string names_of(const std::vector<T>& things) {
 template <class T>
 std::string no_grip_text(const std::string& text, const std::vector<T>& grips) {
   return "there is no grip '" + text + "'. There are: " + names_of(grips);
+}
+
+/// The same of what may come and go (scenes/scene.h, thing_name).
+inline std::string no_thing_text(const std::string& text, const Scene& scene) {
+  std::vector<std::string> names;
+  for (std::size_t thing = 0; thing < thing_count(scene); ++thing) names.push_back(thing_name(scene, thing));
+  return "there is no body or fluid '" + text + "'. There are: " + names_of(names);
 }
 
 /// Which fluid or grip a SetWish means: the one it names, or the only one there is.

@@ -128,14 +128,18 @@ struct Fluid {
   bool operator==(const Fluid&) const = default;
 };
 
-/// A closed mesh that starts full of fluid.
+/// A closed mesh that starts full of fluid, or is filled while the world runs (World::appear).
 struct FluidVolume {
   std::string name;
   int mesh = -1;  ///< index into Scene::meshes
   int fluid = 0;  ///< index into Scene::fluids
   Pose pose;
   glm::dvec3 velocity{0.0};  ///< initial, m/s
+  bool starts_away = false;  ///< empty at the start
+  int fillings = 1;          ///< 1–kMaxFillings: so many times its particles there is room for
+  int body = -1;             ///< index into Scene::bodies: it is filled where that is by then; −1 = as here
 };
+inline constexpr int kMaxFillings = 1000;
 
 struct MassProperties {
   double mass = 0.0;               ///< kg, > 0
@@ -213,6 +217,7 @@ struct Body {
   std::optional<double> temperature{};  ///< °C, kept by all of it whatever it touches; none: no heat passes
   std::vector<PoseKey> keys;  ///< of the mesh frame when driven, the first at 0 s; after the last it stands
   bool repeats = false;       ///< the keys begin again after the last, which is where the first is
+  bool starts_away = false;   ///< it moves, and is not in the world before World::appear
 };
 
 /// A mesh that is only looked at.
@@ -337,6 +342,14 @@ struct DistanceField {
   DistanceFieldView view() const { return {origin, cell, size, distance.data()}; }
 };
 
+/// The particles of one fluid volume: one filling's, and as many more as later fillings have room for.
+struct FillingIds {
+  std::uint32_t first = 0, count = 0;
+  std::uint32_t spare_first = 0, spare_count = 0;  ///< behind all volumes' own; none is there at the start
+
+  bool has(std::uint32_t id) const { return id - first < count || id - spare_first < spare_count; }
+};
+
 /// A scene at one particle spacing.
 struct SampledScene {
   double spacing = 0.0;                        ///< m
@@ -346,6 +359,22 @@ struct SampledScene {
   std::vector<glm::vec3> fluid_positions;      ///< m, world
   std::vector<glm::vec3> fluid_velocities;     ///< m/s
   std::vector<std::uint8_t> fluid_index;       ///< into Scene::fluids, one a particle
+  std::vector<FillingIds> fillings;            ///< one a fluid volume; may be empty where none comes later
 };
+
+/// What may come and go while a world runs, by number: the bodies, then the fluid volumes.
+inline std::size_t thing_count(const Scene& scene) {
+  return scene.bodies.size() + scene.fluid_volumes.size();
+}
+inline const std::string& thing_name(const Scene& scene, std::size_t thing) {
+  const std::size_t bodies = scene.bodies.size();
+  return thing < bodies ? scene.bodies[thing].name : scene.fluid_volumes[thing - bodies].name;
+}
+/// The first of that name; thing_count() where there is none.
+inline std::size_t find_thing(const Scene& scene, std::string_view name) {
+  std::size_t thing = 0;
+  while (thing < thing_count(scene) && thing_name(scene, thing) != name) ++thing;
+  return thing;
+}
 
 }  // namespace slosh

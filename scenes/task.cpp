@@ -21,6 +21,14 @@ std::string joined(const std::vector<Goal>& parts, const char* between, const Sc
 
 }  // namespace
 
+std::vector<const Goal*> leaves_of(const Goal& goal) {
+  if (goal.kind < GoalKind::kAll) return {&goal};
+  std::vector<const Goal*> all;
+  for (const Goal& part : goal.parts)
+    for (const Goal* leaf : leaves_of(part)) all.push_back(leaf);
+  return all;
+}
+
 const char* unit_of(GoalKind kind) {
   switch (kind) {
     case GoalKind::kMass:
@@ -91,6 +99,17 @@ std::string measured_in_words(const Goal& goal, const Scene& scene) {
       break;
   }
   return {};
+}
+
+std::string in_words(const TaskAct& act, const Scene& scene) {
+  const auto thing = static_cast<std::size_t>(std::max(act.thing, 0));
+  if (act.kind == TaskActKind::kAppears) return thing_name(scene, thing) + " appears";
+  if (act.kind == TaskActKind::kTakesAway)
+    return thing_name(scene, thing) +
+           (act.other < 0 ? "" : " in " + scene.regions[static_cast<std::size_t>(act.other)].name) +
+           " is taken away";
+  return "the hand at " + scene.grips[thing].name + " takes " +
+         scene.grips[static_cast<std::size_t>(std::max(act.other, 0))].name;
 }
 
 std::string in_words(const Goal& goal, const Scene& scene) {

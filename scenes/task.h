@@ -41,6 +41,22 @@ struct Goal {
   bool operator==(const Goal&) const = default;
 };
 
+enum class TaskActKind : std::uint8_t {
+  kAppears,    ///< a body or fluid comes (World::appear)
+  kTakesAway,  ///< it goes (World::take_away)
+  kHandTakes,  ///< the hand that holds one grip lets go and takes another
+};
+
+/// What happens when a step is done.
+struct TaskAct {
+  TaskActKind kind = TaskActKind::kAppears;
+  int thing = -1;  ///< by number (thing_name); kHandTakes: index of the grip that is let go
+  int other = -1;  ///< kHandTakes: index of the grip that is taken; kTakesAway of a fluid volume: of the
+                   ///< region in which it goes, −1 = everywhere
+
+  bool operator==(const TaskAct&) const = default;
+};
+
 struct TaskStep {
   std::string say;    ///< one sentence for the person
   std::string hint;   ///< shown where the step takes longer than hint_after; may be empty
@@ -49,18 +65,29 @@ struct TaskStep {
   double within =
       0.0;  ///< s that it should take; 0 = as long as it takes. Later it is done all the same, and late
   double hint_after = 10.0;  ///< s
+  std::vector<TaskAct> then{};
 
   bool operator==(const TaskStep&) const = default;
+};
+
+/// A hand that lets one grip go and takes another, by their numbers.
+struct HandMove {
+  std::uint32_t from = 0, to = 0;
+  bool operator==(const HandMove&) const = default;
 };
 
 /// Where a task is, as a person reads it; all empty without one.
 struct TaskLines {
   std::string title;  ///< "step 2 of 5"
   std::string say;
-  std::string now;   ///< what is measured, against what is wanted
-  std::string hint;  ///< empty before its time
+  std::string now;              ///< what is measured, against what is wanted
+  std::string hint;             ///< empty before its time, or why something has still to wait
+  std::vector<HandMove> hands;  ///< that finished steps asked for, in order
   bool operator==(const TaskLines&) const = default;
 };
+
+/// Those that measure something, in order.
+std::vector<const Goal*> leaves_of(const Goal& goal);
 
 /// Whether it measures the fluid in a region.
 constexpr bool of_region(GoalKind kind) {
@@ -69,12 +96,15 @@ constexpr bool of_region(GoalKind kind) {
 
 inline constexpr std::size_t kMaxTaskSteps = 100;
 inline constexpr std::size_t kMaxGoalParts = 32;  ///< of one goal
+inline constexpr std::size_t kMaxTaskActs = 32;   ///< of one step
 inline constexpr int kDeepestGoal = 8;            ///< goals within goals
 
 /// "at least 0.15 kg", for people.
 std::string limits_in_words(const Goal& goal);
 /// "fluid in pan_inside: at least 0.15 kg", for people.
 std::string in_words(const Goal& goal, const Scene& scene);
+/// "butter appears", for people.
+std::string in_words(const TaskAct& act, const Scene& scene);
 /// Of a goal that measures something, what that is: "fluid in pan_inside".
 std::string measured_in_words(const Goal& goal, const Scene& scene);
 /// Of what a kind measures: "kg"; empty for the last three.

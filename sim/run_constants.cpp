@@ -96,6 +96,14 @@ float wall_layer_of(const Scene& scene, float noise, double thinnest) {
   return slips ? 1.0f / kWallShare : wall_layer(noise, static_cast<float>(thinnest), scene.support_ratio);
 }
 
+bool comes_later(const Scene& scene, const SampledScene& sampled, std::uint32_t id) {
+  for (std::size_t v = 0; v < sampled.fillings.size(); ++v) {
+    const FillingIds& ids = sampled.fillings[v];
+    if (ids.has(id)) return id - ids.first >= ids.count || scene.fluid_volumes[v].starts_away;
+  }
+  return false;
+}
+
 }  // namespace
 
 std::vector<ParticleKind> particle_kinds(const Scene& scene, double spacing) {
@@ -212,9 +220,11 @@ ParticleStart make_particle_start(const Scene& scene, const SampledScene& sample
     }
     p.id[i] = static_cast<std::uint32_t>(i);
     const bool whole = finite(x) && finite(v);
-    const bool inside = whole && constants.grid.contains(x.x, x.y, x.z);
+    const bool waits = i < start.fluid_count && comes_later(scene, sampled, p.id[i]);
+    start.waiting += waits;
+    const bool inside = whole && !waits && constants.grid.contains(x.x, x.y, x.z);
     p.key[i] = inside ? constants.grid.cell_of(x.x, x.y, x.z) : constants.grid.retired_key();
-    if (!inside) start.status |= whole ? kStatusEscaped : kStatusNonFinite;
+    if (!inside && !waits) start.status |= whole ? kStatusEscaped : kStatusNonFinite;
     if (!whole) p.broken += 1;
   }
   start.fixed = surface_particles(scene, sampled, constants.plan, BodyMotion::kFixed);

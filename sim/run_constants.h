@@ -63,6 +63,7 @@ struct ParticleStart {
   std::uint32_t status = 0;  ///< StatusBits of those
   std::vector<Probe> probes;
   std::size_t fluid_count = 0;  ///< without the probes
+  std::size_t waiting = 0;      ///< of these, so many come later (FluidVolume), retired until then
   std::vector<SurfaceParticle> fixed, moving;
   std::vector<DistanceField> clamp_fields;  ///< one a body (clamp_fields)
 };

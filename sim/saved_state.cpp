@@ -12,12 +12,14 @@ namespace slosh {
 namespace {
 
 constexpr std::uint32_t kMagic = 0x54535753;  // "SWST"
-constexpr std::uint32_t kVersion = 7;
-constexpr std::uint32_t kBeforeJoints = 6;  // without SavedState::joints, and read as well: there were none
-constexpr std::uint32_t kBeforeBroken = 5;  // without ParticleState::broken, and read as well: none was
-constexpr std::uint32_t kBeforeGone = 4;    // without RigidBody::gone, and read as well: no body was
+constexpr std::uint32_t kVersion = 8;
+constexpr std::uint32_t kBeforeWaiting = 7;  // without SavedState::waiting, and read as well: none did
+constexpr std::uint32_t kBeforeJoints = 6;   // without SavedState::joints, and read as well: there were none
+constexpr std::uint32_t kBeforeBroken = 5;   // without ParticleState::broken, and read as well: none was
+constexpr std::uint32_t kBeforeGone = 4;     // without RigidBody::gone, and read as well: no body was
 constexpr std::uint32_t kBeforeStiffness = 3;  // without grip_stiffness, and read as well: it was the scene's
 constexpr std::int64_t kMaxOfImpulse = std::int64_t{1} << 62;
+constexpr std::int64_t kMaxWaiting = std::int64_t{1} << 48;  // particles
 const char kWhere[] = "saved world";
 
 template <class S, class V>
@@ -245,6 +247,7 @@ void write_state(const StateFrame& frame, const RunConstants& constants, const S
   s.real(state.gravity_scale);
   s.real(state.age);
   s.raw(state.particles.broken);
+  s.raw(state.waiting);
   for (const double viscosity : state.viscosities) s.real(viscosity);
   for (const RigidBody& body : state.bodies) {
     body_state(s, body);
@@ -296,6 +299,8 @@ Result<bool> read_state(std::span<const std::uint8_t> bytes, const StateFrame& f
   if (version > kBeforeBroken) s.raw(state.particles.broken);
   if (state.particles.broken > frame.fluid_particles)
     s.fail("more particles of it were broken than there are");
+  if (version > kBeforeWaiting) s.raw(state.waiting);
+  if (std::abs(state.waiting) > kMaxWaiting) s.fail("a number of particles in it is beyond all bounds");
   state.viscosities.resize(frame.fluids);
   for (double& viscosity : state.viscosities) {
     s.real(viscosity);
@@ -306,7 +311,7 @@ Result<bool> read_state(std::span<const std::uint8_t> bytes, const StateFrame& f
     body_state(s, read);
     std::uint8_t gone = 0;
     if (version > kBeforeGone) s.raw(gone);
-    if (gone > (body.free ? 1 : 0)) s.fail("a body in it is neither in the world nor out of it");
+    if (gone > (body.is_fixed() ? 0 : 1)) s.fail("a body in it is neither in the world nor out of it");
     read.gone = gone != 0;
     if (!body.is_fixed()) body = read;
   }

@@ -39,7 +39,8 @@ struct SavedState {
   std::uint64_t tick = 0;
   std::uint32_t status = 0;
   double gravity_scale = 1.0;
-  double age = 0.0;  ///< s since the start, settling counted (passes/rest_density/rest_density.h)
+  std::int64_t waiting = 0;  ///< particles out of the world that are neither spilled nor lost
+  double age = 0.0;          ///< s since the start, settling counted (passes/rest_density/rest_density.h)
   std::vector<double> viscosities;      ///< Pa·s, one a fluid
   std::vector<RigidBody> bodies;        ///< only what moves is read back
   std::vector<Wrench> wrenches;         ///< by the fluid, one a body

@@ -40,7 +40,9 @@ struct BodyState {
   Twist twist;                     ///< of the centre of mass, world axes
   glm::dvec3 center_of_mass{0.0};  ///< world
   Wrench fluid;                    ///< on the body by the fluid, about its centre of mass, last step
-  bool gone = false;               ///< it left the world for good: it stands still, and no hand can hold it
+  bool gone = false;               ///< it left the world for good or is away: no hand can hold it
+
+  bool away() const { return is_away(pose); }  ///< it has still to appear, or was taken away
 };
 
 struct GripState {
@@ -68,6 +70,7 @@ struct BodySnapshot {
   std::vector<BodyState> bodies;
   std::vector<GripState> grips;
   std::vector<JointState> joints;  ///< one a joint of the scene
+  std::int64_t waiting = 0;        ///< fluid particles out of the world that are neither spilled nor lost
 };
 
 /// Brings particles from a GPU, on the calling thread, which waits: as Snapshot has them.

@@ -120,6 +120,7 @@ void World::fill(BodySnapshot& out) const {
     out.grips[g].stiffness = impl_->bodies.grip_stiffness().acting[g];
   }
   impl_->bodies.joints().fill(bodies, out.joints);
+  out.waiting = impl_->waiting;
 }
 
 void World::fill(Snapshot& out, bool with_shell) const {
@@ -202,6 +203,7 @@ Result<bool> World::save(std::vector<std::uint8_t>& out) const {
   state.status = w.status | w.engine->status();
   state.gravity_scale = w.gravity_scale;
   state.age = w.age;
+  state.waiting = w.waiting;
   for (const Fluid& fluid : w.scene.fluids) state.viscosities.push_back(fluid.dynamic_viscosity);
   state.bodies = w.bodies.bodies();
   state.wrenches = w.wrenches;
@@ -252,6 +254,7 @@ Result<bool> World::restore(std::span<const std::uint8_t> saved) {
   w.status = state.status & ~kStatusDeviceLost;
   w.tick = state.tick;
   w.age = state.age;
+  w.waiting = state.waiting;
   w.packed = false;
   return true;
 }
@@ -316,7 +319,14 @@ std::uint64_t World::hash() const {
 }
 
 Diagnostics World::diagnostics() const {
-  return impl_->engine->diagnostics();
+  Diagnostics d = impl_->engine->diagnostics();
+  if (impl_->waiting == 0) return d;
+  d.retired = static_cast<std::uint64_t>(
+      std::max<std::int64_t>(0, static_cast<std::int64_t>(d.retired) - impl_->waiting));
+  if (!impl_->plan().walls_hold()) d.lost = d.retired;
+  d.lost = std::min(d.lost, d.retired);
+  d.spilled = d.retired - d.lost;
+  return d;
 }
 std::string World::failure() const {
   return impl_->engine->failure();

@@ -111,7 +111,7 @@ class World {
   const Plan& plan() const;
   double time() const;  ///< s
   std::uint64_t tick() const;
-  std::size_t fluid_count() const;     ///< particles at the start, retired ones included
+  std::size_t fluid_count() const;     ///< all that there is room for, in the world or out of it
   std::size_t boundary_count() const;  ///< body particles
   const StepTimes& times() const;      ///< of the last step
 
@@ -144,6 +144,16 @@ class World {
   /// Takes over what save() wrote, on either backend. Errors, with the world as it was: other bytes, cut off,
   /// another scene, spacing or version, a value that cannot be.
   Result<bool> restore(std::span<const std::uint8_t> saved);
+
+  /// Brings what is away, by its number (thing_count): a body to where the scene has it, or its keys by now;
+  /// of a fluid volume one filling, as far as bodies and fluid leave it free. Takes a few ms. Errors, with
+  /// the world as it was: no such thing, it is there, or stands for good; something is in its place; the
+  /// volume's particles are all in the world (FluidVolume::fillings).
+  Result<bool> appear(std::size_t thing);
+  /// Takes a body or the particles of a fluid volume out of the world; they may come again. With a `region`
+  /// (index into Scene::regions) those of a volume that are in it. Errors likewise: no such thing, or it is
+  /// not there.
+  Result<bool> take_away(std::size_t thing, int region = -1);
 
   /// From the next step on. Errors: no such fluid in the world, or the time step would not be stable with it
   /// (then with the largest value that is). `pascal_seconds` >= 0.

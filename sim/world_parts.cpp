@@ -29,6 +29,10 @@ std::optional<Error> World::Impl::start(const SampledScene& sampled) {
   frame = state_frame(scene, constants.plan, particles);
   fluid_count = particles.fluid_count;
   fluid_of = sampled.fluid_index;
+  waiting = static_cast<std::int64_t>(particles.waiting);
+  fillings = sampled.fillings;
+  if (!fillings.empty()) filling_places = sampled.fluid_positions;
+  region_fields = sampled.region_fields;
   boundary_count = particles.fixed.size() + particles.moving.size();
   Result<std::unique_ptr<ParticleEngine>> made =
       make_particle_engine(constants, particles, bodies.bodies(), options);

@@ -44,6 +44,12 @@ struct World::Impl {
   bool passes_heat_in(const SubStep& step) const {
     return step.elapsed == 0.0 && tick % static_cast<std::uint64_t>(plan().heat_steps) == 0;
   }
+  Result<bool> bring_body(std::size_t body);
+  Result<bool> fill_volume(std::size_t volume);
+  Result<bool> empty_volume(std::size_t volume, int region);
+  /// The engine goes on with these particles, of which `changed` (ids, rising) came or went.
+  void put(const ParticleState& particles, const ImpulseSums& walls,
+           const std::vector<std::uint32_t>& changed);
   void take_drags();
   glm::dvec3 gravity() const { return gravity_scale * scene.gravity; }
   void report(const SubStep& step);
@@ -64,6 +70,10 @@ struct World::Impl {
   std::size_t fluid_count = 0;              // without probes
   std::vector<std::uint8_t> fluid_of;       // index into scene.fluids, by id
   std::size_t boundary_count = 0;
+  std::vector<FillingIds> fillings;       // one a fluid volume, and where its particles come
+  std::vector<glm::vec3> filling_places;  // m, world, as the scene has its bodies; one an id
+  std::vector<DistanceField> region_fields;
+  std::int64_t waiting = 0;  // particles out of the world, neither spilled nor lost
   std::uint32_t status = 0;  // of bodies and inputs; the engine has its own
   std::uint64_t tick = 0;
   StepTimes times;

@@ -57,7 +57,10 @@ Result<std::unique_ptr<HostedRun>> HostedRun::create(HostedWorld& hosted, const 
   }
   s.channel_ = std::make_unique<Channel>(scene.grips.size(), initial_message(*hosted.world, hosted.state.run),
                                          kHostedBytes);
-  if (!scene.task.empty()) s.task_tap_ = std::make_unique<TaskTap>(scene, hosted.prepared.sampled);
+  if (!scene.task.empty())
+    s.task_tap_ = std::make_unique<TaskTap>(
+        scene, hosted.prepared.sampled,
+        [&s](const HostCommand& command, HostAnswer answer) { s.host_->post(command, std::move(answer)); });
   const Result<bool> network = s.open_network(supervision);
   if (!network) return network.error();
   s.make_links();

@@ -61,8 +61,8 @@ struct ChangeRecord {
 };
 template <class V>
 void visit(V& v, ChangeRecord& m) {
-  v.choice("action", m.command.action, 6);
-  v.natural("index", m.command.index, 0, 255);
+  v.choice("action", m.command.action, 8);
+  v.natural("index", m.command.index, 0, wire::kMaxBodies + wire::kMaxFluidVolumes);
   v.real64("value", m.command.value, -1e9, 1e9);
 }
 

@@ -75,21 +75,9 @@ double Replayer::elapsed() const {
 }
 
 Result<bool> Replayer::change(const HostCommand& command) {
-  switch (command.action) {
-    case HostAction::kReset:
-      verdict_.resets += 1;
-      return reset_world(world_, head().scene.fluids.size(), head().start);
-    case HostAction::kViscosity:
-      return world_.set_viscosity(command.index, command.value);
-    case HostAction::kGravityScale:
-      return world_.set_gravity_scale(command.value);
-    case HostAction::kGripStiffness:
-      return world_.set_grip_stiffness(command.index, command.value);
-    case HostAction::kPause:
-    case HostAction::kContinue:
-      break;  // simulated time knows no pause
-  }
-  return true;
+  if (command.action != HostAction::kReset) return change_world(world_, command);
+  verdict_.resets += 1;
+  return reset_world(world_, head().scene.fluids.size(), head().start);
 }
 
 void Replayer::compare_hash(std::uint64_t recorded) {

@@ -43,6 +43,8 @@ std::size_t kind_of(HostAction action) {
     case HostAction::kViscosity:
       return 3;
     case HostAction::kGripStiffness:
+    case HostAction::kAppear:  // these two a guest cannot ask for
+    case HostAction::kTakeAway:
       break;
   }
   return 4;

@@ -27,6 +27,13 @@ std::string words_of(const HostCommand& command, bool done, const Scene& scene) 
       return format("set gravity to %.3g times the scene's", command.value);
     case HostAction::kViscosity:
       return format("set the viscosity of '%.40s' to %.4g Pa·s", name(scene.fluids).c_str(), command.value);
+    case HostAction::kAppear:
+    case HostAction::kTakeAway: {
+      const std::string which = command.index < thing_count(scene) ? thing_name(scene, command.index) : "";
+      const char* verb = command.action == HostAction::kAppear ? "bring" : "take away";
+      const char* past = command.action == HostAction::kAppear ? "brought" : "took away";
+      return format("%s '%.40s'", done ? past : verb, which.c_str());
+    }
     case HostAction::kGripStiffness:
       break;
   }

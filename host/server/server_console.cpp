@@ -65,6 +65,13 @@ Outcome Server::run(const ConsoleCommand& command) {
         return {false, "nobody called '" + command.text + "' is kept out. `who` lists them"};
       state_dirty_ = true;
       return {true, command.text + " may come in again"};
+    case ConsoleVerb::kBring:
+    case ConsoleVerb::kRemove: {
+      const std::size_t thing = find_thing(*world_.scene, command.text);
+      if (thing == thing_count(*world_.scene)) return {false, no_thing_text(command.text, *world_.scene)};
+      return tell_world({command.verb == ConsoleVerb::kBring ? HostAction::kAppear : HostAction::kTakeAway,
+                         static_cast<std::uint32_t>(thing)});
+    }
     case ConsoleVerb::kSet: {
       if (command.what == SetWish::What::kGravity)
         return tell_world({HostAction::kGravityScale, 0, command.value});

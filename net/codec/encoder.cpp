@@ -33,6 +33,7 @@ struct SnapshotEncoder::Impl {
   Epoch epoch;
   double first_time = 0.0;  // s, of the epoch
   bool full = false;        // no more blocks fit into the epoch
+  std::size_t present = 0;  // particles in the newest frame
   std::size_t snapshot_size = 0;
   bool started = false;
 
@@ -173,8 +174,13 @@ const EncodedFrame& SnapshotEncoder::encode(const Snapshot& snapshot, std::uint3
   if (i.started) ++i.out.frame;
   i.run = run;
   i.time_us = static_cast<std::uint64_t>(std::clamp(std::round(time * 1e6), 0.0, 1e13));
-  i.out.key = other_world || new_epoch || i.full || time - i.first_time >= i.options.epoch_seconds - 1e-9 ||
-              time < i.first_time;
+  // An epoch has no place for who comes while it lasts.
+  const auto present = static_cast<std::size_t>(snapshot.fluid_index.size() -
+                                                std::ranges::count(snapshot.fluid_index, std::uint8_t{255}));
+  const bool came = present > i.present;
+  i.present = present;
+  i.out.key = other_world || new_epoch || came || i.full ||
+              time - i.first_time >= i.options.epoch_seconds - 1e-9 || time < i.first_time;
   if (!other_world) {
     const bool looks = i.epoch.shell().looks(snapshot, i.out.frame - i.epoch.first_frame());
     i.epoch.follow(snapshot, looks);

@@ -34,6 +34,21 @@ struct ActingScene {
   std::vector<SentGoal> goals;  ///< of one step after the other
 };
 
+/// What of a fluid volume only matters where it is filled while the world runs.
+struct VolumeComes {
+  bool starts_away = false;
+  int fillings = 1;
+  int body = -1;
+};
+
+/// The same of a scene in which bodies or fluids come and go, or steps of a task do something.
+struct ComingScene {
+  ActingScene acting;
+  std::vector<VolumeComes> volumes;             ///< one a fluid volume
+  std::vector<std::uint8_t> starts_away;        ///< one a body
+  std::vector<std::vector<TaskAct>> step_acts;  ///< one a step of the task
+};
+
 constexpr double kNoLimit = 1e300;  ///< stands for none: an infinity is no number here
 inline double finite_limit(double limit) {
   return std::clamp(limit, -kNoLimit, kNoLimit);
@@ -158,6 +173,55 @@ void visit(V& v, ActingScene& m) {
     each.real64("at_most", sent.goal.at_most, -kNoLimit, kNoLimit);
     each.natural("parts", sent.parts, 0, kMaxGoalParts);
   });
+}
+
+inline constexpr std::array kTaskActKindNames{"appears", "takes_away", "hand_takes"};
+
+/// Whether what comes, goes or is taken may.
+inline bool can_act(const Scene& scene, const TaskAct& act) {
+  const auto below = [](int index, std::size_t count) {
+    return index >= 0 && static_cast<std::size_t>(index) < count;
+  };
+  if (act.kind == TaskActKind::kHandTakes)
+    return below(act.thing, scene.grips.size()) && below(act.other, scene.grips.size());
+  if (!below(act.thing, thing_count(scene))) return false;
+  if (act.other != -1 && !below(act.other, scene.regions.size())) return false;
+  if (static_cast<std::size_t>(act.thing) >= scene.bodies.size()) return true;
+  const Body& body = scene.bodies[static_cast<std::size_t>(act.thing)];
+  return moves(body.motion) && !body.point_probe;
+}
+
+template <class V>
+void visit(V& v, ComingScene& m) {
+  visit(v, m.acting);
+  const Scene& scene = m.acting.textured.looked.settled.measured.packed.scene;
+  v.list_as_long("volumes", m.volumes, "fluid_volumes", scene.fluid_volumes.size(),
+                 [&scene](auto& each, VolumeComes& volume) {
+                   each.flag("starts_away", volume.starts_away);
+                   auto fillings = static_cast<std::uint32_t>(volume.fillings);
+                   each.natural("fillings", fillings, 1, kMaxFillings);
+                   volume.fillings = static_cast<int>(fillings);
+                   each.index("body", volume.body, "bodies", scene.bodies.size(), true);
+                 });
+  std::size_t at = 0;
+  v.list_as_long("starts_away", m.starts_away, "bodies", scene.bodies.size(),
+                 [&scene, &at](auto& each, std::uint8_t& away) {
+                   bool is_away = away != 0;
+                   each.flag("away", is_away);
+                   away = is_away;
+                   if (at < scene.bodies.size())
+                     each.rule("away", !is_away || moves(scene.bodies[at].motion), "is of a fixed body");
+                   ++at;
+                 });
+  v.list_as_long("step_acts", m.step_acts, "task", m.acting.task.size(),
+                 [&scene](auto& each, std::vector<TaskAct>& acts) {
+                   each.list("acts", acts, kMaxTaskActs, [&scene](auto& one, TaskAct& act) {
+                     one.choice("kind", act.kind, kTaskActKindNames);
+                     one.index("thing", act.thing, "things", kMaxBodies + kMaxFluidVolumes, false);
+                     one.index("other", act.other, "regions", kMaxInstruments, true);
+                     one.rule("thing", can_act(scene, act), "is not in the scene, or stays there for good");
+                   });
+                 });
 }
 
 }  // namespace slosh::wire

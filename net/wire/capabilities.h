@@ -42,9 +42,13 @@ constexpr Capabilities kHolds = 1u << 7;
 /// Task follows WorldInfo where the scene has a guided task.
 constexpr Capabilities kTasks = 1u << 8;
 
+/// Task says which hands are to change their grips.
+constexpr Capabilities kTaskHands = 1u << 9;
+
 /// What this program understands; a peer's Hello asks for all of it.
 constexpr Capabilities kOurCapabilities = kRosterChanges | kFluidWrenches | kCouplings | kGripStiffnesses |
-                                          kFeltHands | kNoTickAcks | kLinkRights | kHolds | kTasks;
+                                          kFeltHands | kNoTickAcks | kLinkRights | kHolds | kTasks |
+                                          kTaskHands;
 /// For what has no other side: pages, tests of single messages, files.
 constexpr Capabilities kAllCapabilities = ~Capabilities{0};
 

@@ -10,6 +10,7 @@
 #include "net/wire/capabilities.h"
 #include "net/wire/fields.h"
 #include "net/wire/limits.h"
+#include "scenes/scene.h"
 
 namespace slosh::wire {
 
@@ -296,6 +297,7 @@ struct Task {
   std::string say;
   std::string now;
   std::string hint;
+  std::vector<HandMove> hands;  ///< behind kTaskHands: who holds `from` lets go and takes `to`, in order
 };
 template <class V>
 void visit(V& v, Task& m) {
@@ -303,6 +305,11 @@ void visit(V& v, Task& m) {
   v.text("say", m.say, kMaxText);
   v.text("now", m.now, kMaxText);
   v.text("hint", m.hint, kMaxText);
+  if (v.agreed(kTaskHands))
+    v.list("hands", m.hands, kMaxHandMoves, [](auto& each, HandMove& move) {
+      each.natural("from", move.from, 0, kMaxGrips - 1);
+      each.natural("to", move.to, 0, kMaxGrips - 1);
+    });
 }
 
 /// Something to tell a person: who came, who went, what was refused.

@@ -11,7 +11,6 @@ constexpr std::size_t kMaxMeshes = 4096;
 constexpr std::size_t kMaxMeshVertices = 6'000'000;
 constexpr std::size_t kMaxMeshTriangles = 2'000'000;
 constexpr std::size_t kMaxPictures = 4096;
-constexpr std::size_t kMaxFluidVolumes = 1024;
 constexpr std::size_t kMaxInstruments = 1000;  // of each kind
 constexpr std::size_t kMaxPoseKeys = 1'000'000;
 constexpr std::size_t kMaxSentImages = 16u

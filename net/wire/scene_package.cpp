@@ -14,17 +14,18 @@ namespace {
 using wire::Bytes;
 using wire::ByteView;
 
-// A package: its version, how the rest is coded, the rest. A scene that does more than flow and be held has
-// the sixth version, else one with textures or light of its own the fifth, else one whose fluids say how they
-// look the fourth, else one that settles before its run the third, else one with gauges or regions the
-// second; any other the first, which programs from before these can read. A peer needs the first, the fourth
-// or the fifth.
+// A package: its version, how the rest is coded, the rest. A scene in which something comes or goes has the
+// seventh version, else one that does more than flow and be held the sixth, else one with textures or light
+// of its own the fifth, else one whose fluids say how they look the fourth, else one that settles before its
+// run the third, else one with gauges or regions the second; any other the first, which programs from before
+// these can read. A peer needs the first, the fourth or the fifth.
 constexpr std::uint8_t kVersion = 1;
 constexpr std::uint8_t kMeasured = 2;
 constexpr std::uint8_t kSettled = 3;
 constexpr std::uint8_t kLooked = 4;
 constexpr std::uint8_t kTextured = 5;
 constexpr std::uint8_t kActing = 6;
+constexpr std::uint8_t kComing = 7;
 
 /// Without what packages before the fifth version leave out.
 Material plain(Material material) {
@@ -97,7 +98,16 @@ Fluid plain(Fluid fluid) {
   return fluid;
 }
 
+/// Whether anything in it comes or goes while the world runs.
+bool comes_or_goes(const Scene& scene) {
+  return std::ranges::any_of(scene.bodies, &Body::starts_away) ||
+         std::ranges::any_of(scene.fluid_volumes,
+                             [](const FluidVolume& v) { return v.starts_away || v.fillings > 1; }) ||
+         std::ranges::any_of(scene.task, [](const TaskStep& step) { return !step.then.empty(); });
+}
+
 std::uint8_t version_of(const Scene& scene) {
+  if (comes_or_goes(scene)) return kComing;
   if (!scene.task.empty() || !scene.joints.empty()) return kActing;
   for (const Body& body : scene.bodies)
     if (body.temperature || !body.keys.empty()) return kActing;
@@ -115,8 +125,10 @@ std::uint8_t version_of(const Scene& scene) {
 
 // What a version has, of a scene of the last one.
 template <class F>
-wire::Fault with_version(std::uint8_t version, wire::ActingScene& acting, F&& f) {
+wire::Fault with_version(std::uint8_t version, wire::ComingScene& coming, F&& f) {
+  wire::ActingScene& acting = coming.acting;
   wire::TexturedScene& whole = acting.textured;
+  if (version == kComing) return f(coming);
   if (version == kActing) return f(acting);
   if (version == kTextured) return f(whole);
   if (version == kLooked) return f(whole.looked);
@@ -171,7 +183,12 @@ bool unflatten(const std::vector<wire::SentGoal>& goals, const Scene& scene, std
 }
 
 /// What acts in a scene besides fluid, bodies and hands, as it travels.
-void fill_acting(const Scene& scene, wire::ActingScene& acting) {
+void fill_acting(const Scene& scene, wire::ComingScene& coming) {
+  wire::ActingScene& acting = coming.acting;
+  for (const FluidVolume& volume : scene.fluid_volumes)
+    coming.volumes.push_back({volume.starts_away, volume.fillings, volume.body});
+  for (const Body& body : scene.bodies) coming.starts_away.push_back(body.starts_away);
+  for (const TaskStep& step : scene.task) coming.step_acts.push_back(step.then);
   for (const Fluid& fluid : scene.fluids) {
     Heat heat = fluid.heat;
     for (double* limit : {&heat.sets_above, &heat.sets_below, &heat.melts_above})
@@ -188,7 +205,8 @@ void fill_acting(const Scene& scene, wire::ActingScene& acting) {
 }
 
 /// The reverse; false where goals do not fit the steps.
-bool take_acting(wire::ActingScene& acting, Scene& scene) {
+bool take_acting(wire::ComingScene& coming, bool comes, Scene& scene) {
+  wire::ActingScene& acting = coming.acting;
   for (std::size_t i = 0; i < scene.fluids.size(); ++i) {
     Heat& heat = scene.fluids[i].heat = std::move(acting.heats[i]);
     for (double* limit : {&heat.sets_above, &heat.sets_below, &heat.melts_above})
@@ -204,7 +222,17 @@ bool take_acting(wire::ActingScene& acting, Scene& scene) {
   std::size_t at = 0;
   for (TaskStep& step : scene.task)
     if (!unflatten(acting.goals, scene, at, step.until)) return false;
-  return at == acting.goals.size();
+  if (at != acting.goals.size()) return false;
+  if (!comes) return true;
+  for (std::size_t i = 0; i < scene.fluid_volumes.size(); ++i) {
+    scene.fluid_volumes[i].starts_away = coming.volumes[i].starts_away;
+    scene.fluid_volumes[i].fillings = coming.volumes[i].fillings;
+    scene.fluid_volumes[i].body = coming.volumes[i].body;
+  }
+  for (std::size_t i = 0; i < scene.bodies.size(); ++i)
+    scene.bodies[i].starts_away = coming.starts_away[i] != 0;
+  for (std::size_t i = 0; i < scene.task.size(); ++i) scene.task[i].then = std::move(coming.step_acts[i]);
+  return true;
 }
 
 enum Coding : std::uint8_t { kStored, kZstd };
@@ -228,7 +256,7 @@ void keep_seen(Scene& scene) {
   for (Body& body : scene.bodies) {
     body.temperature.reset();
     body.keys.clear();
-    body.repeats = false;
+    body.repeats = body.starts_away = false;
   }
   std::vector<int> moved(scene.meshes.size(), -1);
   std::vector<TriangleMesh> kept;
@@ -280,18 +308,18 @@ std::vector<std::string> images_left_behind(const Scene& scene) {
 }
 
 Result<Bytes> pack_scene(const Scene& scene, double spacing, SceneParts parts) {
-  wire::ActingScene acting{{{{{{scene, spacing}}}, scene.fluids}, {}, {}}, {}, {}, {}, {}, {}};
-  wire::TexturedScene& whole = acting.textured;
+  wire::ComingScene coming{{{{{{{scene, spacing}}}, scene.fluids}, {}, {}}, {}, {}, {}, {}, {}}, {}, {}, {}};
+  wire::TexturedScene& whole = coming.acting.textured;
   Scene& sent = whole.looked.settled.measured.packed.scene;
   if (parts == SceneParts::kSeen) keep_seen(sent);
   keep_sent_images(sent);
   for (const TriangleMesh& mesh : sent.meshes) whole.texcoords.push_back(mesh.texcoords);
   each_material(sent, [&](Material& material) { whole.materials.push_back(material); });
   const std::uint8_t version = version_of(sent);
-  if (version == kActing) fill_acting(sent, acting);
+  if (version >= kActing) fill_acting(sent, coming);
   Bytes content;
   if (const wire::Fault fault =
-          with_version(version, acting, [&](auto& fields) { return wire::encode(fields, content); })) {
+          with_version(version, coming, [&](auto& fields) { return wire::encode(fields, content); })) {
     return Error{"scene '" + scene.name + "'", "cannot be sent or recorded: " + fault.text(),
                  "net/WIRE_FORMAT.md has the limits"};
   }
@@ -319,7 +347,7 @@ Result<Bytes> pack_scene(const Scene& scene, double spacing, SceneParts parts) {
 Result<UnpackedScene> unpack_scene(ByteView package) {
   if (package.size() < kHead) return damaged("it is empty");
   if (package.size() > wire::kMaxSceneBytes + kHead) return damaged("it is too large");
-  if (package[0] < kVersion || package[0] > kActing)
+  if (package[0] < kVersion || package[0] > kComing)
     return damaged("its version is " + std::to_string(package[0]));
   if (package[1] > kZstd) return damaged("its coding is " + std::to_string(package[1]));
   ByteView content = package.subspan(kHead);
@@ -330,10 +358,10 @@ Result<UnpackedScene> unpack_scene(ByteView package) {
     unpacked = std::move(result.value());
     content = unpacked;
   }
-  wire::ActingScene acting;
-  wire::TexturedScene& whole = acting.textured;
+  wire::ComingScene coming;
+  wire::TexturedScene& whole = coming.acting.textured;
   if (const wire::Fault fault =
-          with_version(package[0], acting, [&](auto& fields) { return wire::decode(content, fields); })) {
+          with_version(package[0], coming, [&](auto& fields) { return wire::decode(content, fields); })) {
     return damaged(fault.text());
   }
   wire::PackedScene& packed = whole.looked.settled.measured.packed;
@@ -356,7 +384,7 @@ Result<UnpackedScene> unpack_scene(ByteView package) {
       ++read;
     });
   }
-  if (package[0] == kActing && !take_acting(acting, packed.scene))
+  if (package[0] >= kActing && !take_acting(coming, package[0] == kComing, packed.scene))
     return damaged("goals of its task do not fit its steps");
   return UnpackedScene{std::move(packed.scene), packed.spacing};
 }

@@ -53,7 +53,7 @@ std::vector<Table> tables() {
           message<Bodies>("Bodies"),
           message<Hands>("Hands"),
           message<FluidWrench>("FluidWrench"),
-          part<ActingScene>("Scene")};
+          part<ComingScene>("Scene")};
 }
 
 constexpr const char kBegin[] = "<!-- table: ";

@@ -186,6 +186,7 @@ void print_scene(const Scene& scene, const Counted& counted) {
     if (step.hold > 0.0) std::printf(", for %.3g s", step.hold);
     if (step.within > 0.0) std::printf("; within %.3g s", step.within);
     std::printf("\n");
+    for (const TaskAct& act : step.then) std::printf("      then %s\n", in_words(act, scene).c_str());
   }
   std::size_t thinnest_body = 0;
   const double wall = thinnest_wall(scene, &thinnest_body);

@@ -11,11 +11,13 @@ namespace {
 
 constexpr std::size_t kSnapshotBytes = std::size_t{512} << 20;
 
-/// What kWorld or kParameter asks of a host.
+/// What kWorld, kParameter or kThing asks of a host.
 HostCommand order_of(const RemoteCommand& command) {
   constexpr std::array kWorldActions{HostAction::kPause, HostAction::kContinue, HostAction::kReset};
   if (command.kind == RemoteCommand::Kind::kWorld)
     return {kWorldActions[static_cast<std::size_t>(command.action)]};
+  if (command.kind == RemoteCommand::Kind::kThing)
+    return {command.take ? HostAction::kAppear : HostAction::kTakeAway, command.index};
   HostAction action = HostAction::kGripStiffness;
   if (command.parameter == wire::Parameter::kFluidViscosity) action = HostAction::kViscosity;
   if (command.parameter == wire::Parameter::kGravityScale) action = HostAction::kGravityScale;
@@ -69,7 +71,10 @@ Result<std::unique_ptr<LiveRun>> LocalRun::create(const Prepared& prepared, Devi
   run->host_->add_tap(run->hands_tap_);
   run->host_->add_tap(run->window_tap_);
   if (!scene.task.empty()) {
-    run->task_tap_ = std::make_unique<TaskTap>(scene, prepared.sampled);
+    run->task_tap_ = std::make_unique<TaskTap>(
+        scene, prepared.sampled, [host = run->host_.get()](const HostCommand& command, HostAnswer answer) {
+          host->post(command, std::move(answer));
+        });
     run->host_->add_tap(*run->task_tap_);
   }
   ServoOptions servo;
@@ -132,7 +137,7 @@ PeerLine LocalRun::understand(const std::string& line) {
 /// The answer comes after the step that is under way, which may take long: nobody waits for it.
 void LocalRun::ask(const RemoteCommand& command, bool typed) {
   const bool world = command.kind == RemoteCommand::Kind::kWorld;
-  if (!world && command.kind != RemoteCommand::Kind::kParameter) return;  // every grip has its hand
+  if (command.kind <= RemoteCommand::Kind::kNextGrip) return;  // every grip has its hand
   if (world && command.action != wire::WorldAction::kReset)
     paused_ = command.action == wire::WorldAction::kPause;
   const std::string said = typed ? done_text(command, prepared_.scene) : std::string();
@@ -192,7 +197,10 @@ void LocalRun::report(RunSummary& s) const {
   s.backend = backend_name(prepared_.backend);
   s.threads = prepared_.threads;
   if (!prepared_.folder.empty()) s.files = {"wrenches.csv", "poses.csv"};
-  if (task_tap_) report_task(prepared_.scene, task_tap_->done(), s);
+  if (task_tap_) {
+    report_task(prepared_.scene, task_tap_->done(), s);
+    s.spilled_mass = task_tap_->spilled();
+  }
   files_->report(host_->world(), s);
   for (std::string& sentence : hands_tap_.never_acted(prepared_.scene))
     s.problems.push_back(std::move(sentence));

@@ -1,6 +1,7 @@
 #include "peer/app/remote_run.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "net/clock.h"
 #include "net/grip_start.h"
@@ -13,7 +14,9 @@ RemoteRun::RemoteRun(const Stage& stage, RemoteVisit& visit, RemoteRunOptions op
     : stage_(stage),
       visit_(visit),
       options_(std::move(options)),
-      device_on_(stage.scene.grips.size(), false) {
+      device_on_(stage.scene.grips.size(), false),
+      spec_of_(stage.scene.grips.size()),
+      spec_for_(stage.scene.grips.size()) {
   for (const Grip& grip : stage.scene.grips) grip_names_.push_back(grip.name);
 }
 
@@ -80,6 +83,7 @@ Rates RemoteRun::world_rates() {
   hands_->follow_stiffness(status_.world.grip_stiffness);
   const Result<bool> followed = follow_grips();
   (void)followed;  // each trouble was told, and the grip let go
+  follow_task();
   for (const std::string& notice : visit_.take_notices()) options_.tell(notice);
   Rates rates;
   rates.time = status_.world_time;
@@ -89,6 +93,25 @@ Rates RemoteRun::world_rates() {
   rates.people = people_text(status_, grip_names_);
   rates.task = status_.task;
   return rates;
+}
+
+/// Where a finished step of the task gives a hand of ours another tool, asks for that.
+void RemoteRun::follow_task() {
+  const std::vector<HandMove>& moves = status_.task.hands;
+  hands_moved_ = std::min(hands_moved_, moves.size());  // a task that began anew asks anew
+  for (; hands_moved_ < moves.size(); ++hands_moved_) {
+    const HandMove& move = moves[hands_moved_];
+    const bool ours = move.from < status_.held.size() && status_.held[move.from];
+    if (!ours || move.to >= status_.held.size() || status_.held[move.to]) continue;
+    spec_for_[move.to] = spec_of_[move.from];
+    RemoteCommand command;
+    command.grip = move.from;
+    command.take = false;
+    visit_.ask(command);
+    command.grip = move.to;
+    command.take = true;
+    visit_.ask(command);
+  }
 }
 
 /// Simulated time that has passed for this person, whatever the world's own did in between. The world's time
@@ -116,8 +139,12 @@ Result<bool> RemoteRun::follow_grips() {
       hands_->set(i, {});
       continue;
     }
-    const std::string spec = specs.empty() ? "script" : specs[std::min(grips_taken_, specs.size() - 1)];
-    grips_taken_ += 1;
+    std::string spec = std::exchange(spec_for_[i], {});
+    if (spec.empty()) {
+      spec = specs.empty() ? "script" : specs[std::min(grips_taken_, specs.size() - 1)];
+      grips_taken_ += 1;
+    }
+    spec_of_[i] = spec;
     Result<HandDevice> made = hand_for(i, spec);
     if (!made) {
       options_.tell("slosh: " + made.error().text());

@@ -51,6 +51,7 @@ class RemoteRun final : public LiveRun {
   void look_at_world();
   void follow_time();
   Result<bool> follow_grips();
+  void follow_task();
   Result<HandDevice> hand_for(std::size_t grip, const std::string& spec) const;
 
   const Stage& stage_;
@@ -58,8 +59,11 @@ class RemoteRun final : public LiveRun {
   RemoteRunOptions options_;
   RemoteStatus status_;
   std::unique_ptr<OwnHands> hands_;
-  std::vector<bool> device_on_;  // grips that have a device now
-  std::size_t grips_taken_ = 0;  // ever
+  std::vector<bool> device_on_;        // grips that have a device now
+  std::size_t grips_taken_ = 0;        // ever
+  std::vector<std::string> spec_of_;   // one a grip: what its device was made by
+  std::vector<std::string> spec_for_;  // one a grip: of the hand that is on its way to it
+  std::size_t hands_moved_ = 0;        // of the task's
   SnapshotPointer last_snapshot_;
   std::vector<std::string> grip_names_;
   double elapsed_ = 0.0;    // simulated s since the start

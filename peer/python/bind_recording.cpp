@@ -27,6 +27,10 @@ const char* name_of(HostAction action) {
       return "gravity_scale";
     case HostAction::kGripStiffness:
       return "grip_stiffness";
+    case HostAction::kAppear:
+      return "appear";
+    case HostAction::kTakeAway:
+      return "take_away";
   }
   return "unknown";
 }
@@ -187,8 +191,8 @@ void bind_recording(py::module_& m) {
       .def_readonly("body_index", &RecordingTable::body_index, "(F,) int: which of Scene.bodies they are")
       .def_readonly("hashes", &RecordingTable::hashes, "[(tick, hash of the world)]")
       .def_readonly("changes", &RecordingTable::changes,
-                    "[(time s, 'pause', 'continue', 'reset', 'viscosity', 'gravity_scale' or "
-                    "'grip_stiffness', fluid or grip, value)]");
+                    "[(time s, 'pause', 'continue', 'reset', 'viscosity', 'gravity_scale', 'grip_stiffness', "
+                    "'appear' or 'take_away', fluid, grip or thing (bodies, then fluid volumes), value)]");
   py::class_<ReplayTable>(m, "Replay", "A recording run again.")
       .def_readonly("scene", &ReplayTable::scene, "Scene")
       .def_readonly("run", &ReplayTable::run, "Run; its time goes on over resets")

@@ -124,6 +124,18 @@ void bind_changes(py::class_<WorldProgram>& c) {
           py::arg("grip"), py::arg("scale"),
           "Times the scene's springs, 0.05 to 4; gone over to from the next step on, in 0.3 s from 1 to 4. "
           "The dampers stay.")
+      .def(
+          "appear",
+          [](WorldProgram& w, const std::string& name) { w.change({HostAction::kAppear, w.thing(name)}); },
+          py::arg("name"),
+          "Brings a body that is away to where the scene has it, or fills a fluid volume (its node's name), "
+          "as "
+          "far as\n"
+          "bodies and fluid leave it free. Raises slosh.Error where there is no room.")
+      .def(
+          "take_away",
+          [](WorldProgram& w, const std::string& name) { w.change({HostAction::kTakeAway, w.thing(name)}); },
+          py::arg("name"), "Takes a body, or the particles of a fluid volume, out of the world.")
       .def("reset", &WorldProgram::reset,
            "Puts the world back to where it began, at time 0: as it was made, or as settle() left it last. "
            "Hands, and\n"

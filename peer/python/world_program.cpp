@@ -129,6 +129,14 @@ std::size_t WorldProgram::fluid(const py::object& which) const {
   return index_of(which, names_of(scene_->fluids), "fluid");
 }
 
+std::uint32_t WorldProgram::thing(const std::string& name) const {
+  const std::size_t found = find_thing(*scene_, name);
+  if (found == thing_count(*scene_))
+    throw Raised(
+        {"slosh.World", "has no body or fluid volume '" + name + "'", "Scene.bodies has their names"});
+  return static_cast<std::uint32_t>(found);
+}
+
 void WorldProgram::hold(const py::object& which, const py::object& source) {
   refuse_while_moving();
   hands_[grip(which)].hold(source);
@@ -282,14 +290,9 @@ const Measurement& WorldProgram::measure() {
 
 void WorldProgram::change(const HostCommand& command) {
   refuse_while_moving();
-  if (command.action == HostAction::kViscosity) {
-    take(world_->set_viscosity(command.index, command.value));
-  } else if (command.action == HostAction::kGripStiffness) {
-    take(world_->set_grip_stiffness(command.index, command.value));
-  } else {
-    take(world_->set_gravity_scale(command.value));
-  }
+  take(change_world(*world_, command));
   moments_.outdated();
+  bodies_known_ = false;
   if (recording_)
     recording_->after_change(*world_, command, state_of(*world_, scene_->fluids.size(), false, resets_));
 }

@@ -38,6 +38,7 @@ class WorldProgram {
   std::size_t grip(const py::object& name_or_number) const;   ///< raises KeyError with the names
   std::size_t body(const py::object& name_or_number) const;   ///< likewise
   std::size_t fluid(const py::object& name_or_number) const;  ///< likewise
+  std::uint32_t thing(const std::string& name) const;         ///< a body or fluid volume (thing_name)
 
   void hold(const py::object& grip, const py::object& source);
   void step(long steps);

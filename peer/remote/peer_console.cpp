@@ -133,6 +133,14 @@ PeerLine set(const std::vector<std::string>& words, const Scene& scene) {
   return ask(command);
 }
 
+PeerLine come_or_go(ConsoleVerb verb, const std::string& name, const Scene& scene) {
+  RemoteCommand command;
+  command.kind = RemoteCommand::Kind::kThing;
+  command.take = verb == ConsoleVerb::kBring;
+  command.index = static_cast<std::uint32_t>(find_thing(scene, name));
+  return command.index == thing_count(scene) ? say(no_thing_text(name, scene)) : ask(command);
+}
+
 PeerLine line_of(Console console, std::string_view typed, const RemoteStatus& status, const Scene& scene,
                  const std::string& connection) {
   const Result<std::vector<std::string>> split = console_words(typed);
@@ -157,6 +165,9 @@ PeerLine line_of(Console console, std::string_view typed, const RemoteStatus& st
       return world(wire::WorldAction::kReset);
     case ConsoleVerb::kSet:
       return set(words, scene);
+    case ConsoleVerb::kBring:
+    case ConsoleVerb::kRemove:
+      return come_or_go(verb.value(), words[1], scene);
     case ConsoleVerb::kStatus:
       return say(status_lines(status, scene, connection));
     case ConsoleVerb::kQuit: {

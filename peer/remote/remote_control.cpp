@@ -194,8 +194,8 @@ wire::Fault RemoteLink::on_rights(wire::ByteView payload) {
 
 wire::Fault RemoteLink::on_task(wire::ByteView payload) {
   wire::Task task;
-  if (wire::Fault fault = wire::decode(payload, task)) return fault;
-  status_.task = {task.title, task.say, task.now, task.hint};
+  if (wire::Fault fault = wire::decode(payload, task, agreed_)) return fault;
+  status_.task = {task.title, task.say, task.now, task.hint, task.hands};
   publish(now());
   return {};
 }

@@ -13,6 +13,8 @@ std::string done_text(const RemoteCommand& command, const Scene& scene) {
     constexpr std::array kDone{"you paused the world", "the world goes on", "the world is back at its start"};
     return kDone[static_cast<std::size_t>(command.action)];
   }
+  if (command.kind == RemoteCommand::Kind::kThing)
+    return thing_name(scene, command.index) + (command.take ? " is there" : " is away");
   char text[160];
   if (command.parameter == wire::Parameter::kGravityScale) {
     std::snprintf(text, sizeof text, "gravity is %.3g times the scene's now", command.value);

@@ -63,12 +63,13 @@ struct RemoteCommand {
     kNextGrip,   ///< let go of all that is held, else take the first free one
     kWorld,      ///< do `action`
     kParameter,  ///< set `parameter`
+    kThing,      ///< bring thing `index`, or without `take` take it away; of a world of one's own
   } kind = Kind::kGrip;
   std::uint32_t grip = 0;
   bool take = true;
   wire::WorldAction action = wire::WorldAction::kPause;
   wire::Parameter parameter = wire::Parameter::kGravityScale;
-  std::uint32_t index = 0;  ///< fluid or grip
+  std::uint32_t index = 0;  ///< fluid, grip or thing
   double value = 0.0;       ///< Pa·s, or times the scene's
 };
 

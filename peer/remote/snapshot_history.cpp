@@ -50,6 +50,7 @@ BodySnapshot blend(const BodySnapshot& a, const BodySnapshot& b, double time) {
   out.status = a.status | b.status;
   for (std::size_t i = 0; i < out.bodies.size() && i < b.bodies.size(); ++i) {
     BodyState& s = out.bodies[i];
+    if (s.away() != b.bodies[i].away()) continue;  // it comes, or goes, at once
     s.pose = mixed(s.pose, b.bodies[i].pose, share);
     s.twist = mixed(s.twist, b.bodies[i].twist, share);
     s.center_of_mass = mixed(s.center_of_mass, b.bodies[i].center_of_mass, share);
@@ -57,6 +58,7 @@ BodySnapshot blend(const BodySnapshot& a, const BodySnapshot& b, double time) {
   }
   for (std::size_t i = 0; i < out.grips.size() && i < b.grips.size(); ++i) {
     GripState& s = out.grips[i];
+    if (is_away(s.pose) != is_away(b.grips[i].pose)) continue;
     s.pose = mixed(s.pose, b.grips[i].pose, share);
     s.twist = mixed(s.twist, b.grips[i].twist, share);
     s.handle = mixed(s.handle, b.grips[i].handle, share);

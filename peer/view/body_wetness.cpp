@@ -163,7 +163,9 @@ void BodyWetness::record(const Snapshot& snapshot) {
   const std::size_t turns = count * grids_.size() / kMaxLooked + 1;
   turn_ = (turn_ + 1) % turns;
   for (Grid& grid : grids_) {
-    if (grid.body >= snapshot.rigid.bodies.size() || snapshot.rigid.bodies[grid.body].gone) continue;
+    if (grid.body >= snapshot.rigid.bodies.size() || snapshot.rigid.bodies[grid.body].gone ||
+        snapshot.rigid.bodies[grid.body].away())
+      continue;
     const Pose& pose = snapshot.rigid.bodies[grid.body].pose;
     const glm::mat3 turned = glm::transpose(glm::mat3_cast(glm::quat(pose.orientation)));
     const glm::vec3 origin(pose.position);

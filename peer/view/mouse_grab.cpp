@@ -80,7 +80,7 @@ std::optional<Grabbed> MouseGrab::look(const glm::dvec2& pixel, const OrbitCamer
   double depth = std::numeric_limits<double>::infinity();
   for (std::size_t b = 0; b < scene_.bodies.size() && b < world.bodies.size(); ++b) {
     const int body = static_cast<int>(b);
-    if (!has_lent(body, lent)) continue;
+    if (!has_lent(body, lent) || world.bodies[b].away()) continue;
     const std::optional<double> along = hit(body, world.bodies[b].pose, camera.eye(), ray);
     if (!along || *along >= depth) continue;
     depth = *along;

@@ -107,6 +107,10 @@ Problem read_body(Reading& reading, int node) {
                 : motion == "driven" ? BodyMotion::kDriven
                                      : BodyMotion::kFixed;
   read_repeat(extras, body);
+  body.starts_away = extras.flag("starts_away", false);
+  // What comes and goes is carried along like what moves.
+  const bool stands = body.motion == BodyMotion::kFixed;
+  if (body.starts_away && stands) body.motion = BodyMotion::kDriven;
   const Problem mesh_problem = read_node_mesh(reading, node, rest, true, body.mesh);
   mesh::VolumeIntegrals volume;
   volume.volume = 1.0;  // so that fields are looked at where there is no solid to weigh
@@ -131,7 +135,9 @@ Problem read_body(Reading& reading, int node) {
   }
   body.material = read_material(reading, reading.document.model.nodes[node].mesh);
   if (Problem problem = all_of(reading, mesh_problem, extras)) return problem;
-  if (body.motion == BodyMotion::kDriven) {
+  if (body.motion == BodyMotion::kDriven && stands) {
+    body.keys = {{0.0, body.pose}};
+  } else if (body.motion == BodyMotion::kDriven) {
     if (Problem problem = read_keys(reading, node, body)) return problem;
   }
   if (Problem problem = check_place(reading, node, body.mesh, body.pose)) return problem;
@@ -181,6 +187,8 @@ Problem read_fluid_volume(Reading& reading, int node) {
   extras.text("slosh", "");
   const std::string name = extras.text("fluid", volume.name);
   volume.velocity = extras.vector("velocity_m_s", glm::dvec3(0.0), Range{-1e3, 1e3});
+  volume.starts_away = extras.flag("starts_away", false);
+  volume.fillings = static_cast<int>(extras.number("fillings", 1.0, Range{1.0, double{kMaxFillings}}));
   Fluid fluid;
   fluid.name = name;
   read_fluid_fields(extras, fluid);
@@ -215,6 +223,15 @@ Problem read_fluid_volume(Reading& reading, int node) {
   if (Problem problem = all_of(reading, mesh_problem, extras)) return problem;
   if (Problem problem = check_place(reading, node, volume.mesh, volume.pose)) return problem;
   scene.fluid_volumes.push_back(std::move(volume));
+  reading.volume_nodes.push_back(node);
+  return std::nullopt;
+}
+
+Problem find_carriers(Reading& reading) {
+  for (std::size_t v = 0; v < reading.volume_nodes.size(); ++v) {
+    const int carrier = body_node_above(reading, reading.volume_nodes[v]);
+    if (carrier >= 0) reading.scene.fluid_volumes[v].body = reading.body_of_node.at(carrier);
+  }
   return std::nullopt;
 }
 

@@ -6,16 +6,9 @@ namespace {
 
 constexpr std::size_t kMaxOfEach = 1000;
 
-/// The node of the body that carries a node; −1 when none does.
-int carrier(const Reading& reading, int node) {
-  int up = reading.document.parent[node];
-  while (up >= 0 && !reading.body_of_node.contains(up)) up = reading.document.parent[up];
-  return up;
-}
-
 Problem read_place(Reading& reading, int node, int& body, Pose& pose, glm::dmat3& rest) {
   if (Problem problem = read_pose(reading, node, pose, rest)) return problem;
-  const int up = carrier(reading, node);
+  const int up = body_node_above(reading, node);
   body = up < 0 ? -1 : reading.body_of_node.at(up);
   if (up < 0) return std::nullopt;
   // The file's, which a driven body's first key need not be.
@@ -32,6 +25,12 @@ Problem too_many(const Reading& reading, int node, const char* what) {
 }
 
 }  // namespace
+
+int body_node_above(const Reading& reading, int node) {
+  int up = reading.document.parent[node];
+  while (up >= 0 && !reading.body_of_node.contains(up)) up = reading.document.parent[up];
+  return up;
+}
 
 Problem read_gauge(Reading& reading, int node) {
   Gauge gauge;

@@ -32,15 +32,8 @@ constexpr JointFields kJointFields[] = {
     {"min_m", "max_m", "damping_n_s_m", "motor_m_s", "motor_n"},
 };
 
-/// The node of the body that a node hangs on; −1 when it hangs on none.
-int holder(const Reading& reading, int node) {
-  int up = reading.document.parent[node];
-  while (up >= 0 && !reading.body_of_node.contains(up)) up = reading.document.parent[up];
-  return up;
-}
-
 Problem place_joint(Reading& reading, int node, Joint& joint) {
-  const int up = holder(reading, node);
+  const int up = body_node_above(reading, node);
   if (up < 0) {
     return Error{reading.document.owner(node), "is not the child of a body",
                  "Parent it to one of the two bodies that it joins (slosh = \"body\")"};

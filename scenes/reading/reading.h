@@ -43,6 +43,7 @@ struct Reading {
   std::size_t image_pixels = 0;       ///< of all of these
   std::vector<gltf::Note> notes;      ///< what is said and not done
   std::size_t work = 0;               ///< of all meshes that were read (gltf::work_of_mesh)
+  std::vector<int> volume_nodes{};    ///< one a fluid volume
 };
 
 /// All stages in order. The first problem ends the reading; with `all` every one is put there instead, but
@@ -65,6 +66,7 @@ Problem check_animated(Reading& reading, int node);
 Problem read_scene_fields(Reading& reading);
 
 Problem read_fluid_volume(Reading& reading, int node);
+Problem find_carriers(Reading& reading);  ///< FluidVolume::body; after all bodies
 Problem read_body(Reading& reading, int node);
 Problem read_probe(Reading& reading, int node);
 /// The animation of a driven body. Errors: there is none, too fast, too far, it does not meet where it
@@ -89,6 +91,8 @@ Problem fit_spacing(Reading& reading);  ///< likewise: a coarsest spacing that w
 /// what of them cannot be read is left out, and told in Scene::left_out.
 Material read_material(Reading& reading, int mesh);
 
+/// The node of the body that a node hangs on; −1 when it hangs on none. After all bodies.
+int body_node_above(const Reading& reading, int node);
 /// Rigid pose of a node, and what the pose leaves of its transform.
 Problem read_pose(const Reading& reading, int node, Pose& pose, glm::dmat3& rest);
 

@@ -29,9 +29,12 @@ Problem something_to_simulate(Reading& reading) {
 Problem settle_as_usual(Reading& reading) {
   Scene& scene = reading.scene;
   if (reading.document.scene_extras.contains("settle_s")) return std::nullopt;
-  const auto moves = [](const auto& part) { return part.velocity != glm::dvec3(0.0); };
+  const auto moves = [](const FluidVolume& volume) {
+    return volume.velocity != glm::dvec3(0.0) && !volume.starts_away;
+  };
   const auto thrown = [](const Body& body) {
-    return body.twist.linear != glm::dvec3(0.0) || body.twist.angular != glm::dvec3(0.0);
+    return (body.twist.linear != glm::dvec3(0.0) || body.twist.angular != glm::dvec3(0.0)) &&
+           !body.starts_away;
   };
   if (std::ranges::none_of(scene.fluid_volumes, moves) && std::ranges::none_of(scene.bodies, thrown))
     scene.settle = kUsualSettle, scene.settle_longest = kLongestSettle;
@@ -41,7 +44,7 @@ Problem settle_as_usual(Reading& reading) {
 Problem nothing_that_settling_would_undo(Reading& reading) {
   if (reading.scene.settle == 0.0) return std::nullopt;
   for (const FluidVolume& volume : reading.scene.fluid_volumes) {
-    if (volume.velocity == glm::dvec3(0.0)) continue;
+    if (volume.velocity == glm::dvec3(0.0) || volume.starts_away) continue;
     return Error{reading.document.file + ": node '" + volume.name + "': extras.velocity_m_s",
                  "would be lost: the scene's settle_s brings the fluid to rest before the run",
                  "Remove one of the two"};
@@ -139,6 +142,7 @@ std::optional<Scene> read_stages(const gltf::Document& document, std::vector<Err
   stages.nodes(read_fluid_volume, NodeKind::kFluid);
   stages.nodes(read_body, NodeKind::kBody);
   stages.nodes(read_probe, NodeKind::kProbe);
+  stages.whole(find_carriers, true);
   stages.nodes(read_picture, NodeKind::kPicture);
   stages.whole(something_to_simulate, true);
   stages.whole(settle_as_usual);

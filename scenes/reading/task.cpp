@@ -45,6 +45,28 @@ std::string known_kinds() {
   return list;
 }
 
+/// Index into `names`; −1, and an error, where there is none of that name.
+int named(const std::string& name, const std::vector<std::string>& names, const std::string& what,
+          const std::string& where, std::vector<Error>& errors) {
+  const auto found = std::ranges::find(names, name);
+  if (found != names.end()) return static_cast<int>(found - names.begin());
+  std::string list;
+  for (const std::string& known : names) list += (list.empty() ? "" : ", ") + known;
+  errors.push_back({where, "names the " + what + " '" + name + "', and there is none",
+                    list.empty() ? "Give an object slosh = \"" + what + "\" and that name"
+                                 : did_you_mean(name, names) + "Name one of: " + list});
+  return -1;
+}
+
+/// What stands for good neither comes nor goes.
+void check_comes(const Body& body, const std::string& where, std::vector<Error>& errors) {
+  if (body.point_probe)
+    errors.push_back({where, "is a probe, which stays", "Name a body with a mesh, or a fluid"});
+  else if (!moves(body.motion))
+    errors.push_back(
+        {where, "'" + body.name + "' stands for good", "Give it motion = \"free\", or starts_away = true"});
+}
+
 /// Reads goals, and keeps what is wrong with them.
 class Goals {
  public:
@@ -104,17 +126,9 @@ class Goals {
     return reading::names_of(scene.bodies);
   }
 
-  /// −1, and an error, where there is none of that name.
   int find(const std::string& name, const std::vector<std::string>& names, const std::string& what,
            const std::string& where) {
-    const auto found = std::ranges::find(names, name);
-    if (found != names.end()) return static_cast<int>(found - names.begin());
-    std::string list;
-    for (const std::string& known : names) list += (list.empty() ? "" : ", ") + known;
-    const std::string mend = list.empty() ? "Give an object slosh = \"" + what + "\" and that name"
-                                          : did_you_mean(name, names) + "Name one of: " + list;
-    fail(where, "names the " + what + " '" + name + "', and there is none", mend);
-    return -1;
+    return named(name, names, what, where, errors);
   }
 
   void read_parts(const json& parts, const std::string& owner, int depth, Goal& goal) {
@@ -151,6 +165,65 @@ class Goals {
   Reading& reading_;
 };
 
+struct ActField {
+  const char* key;
+  TaskActKind kind;
+};
+constexpr ActField kActFields[] = {{"appears", TaskActKind::kAppears},
+                                   {"takes_away", TaskActKind::kTakesAway},
+                                   {"hand", TaskActKind::kHandTakes}};
+
+int region_of_fluid(const Scene& scene, const std::string& name, int thing, const std::string& where,
+                    std::vector<Error>& errors) {
+  if (thing >= 0 && static_cast<std::size_t>(thing) < scene.bodies.size())
+    errors.push_back({where, "is given of a body, which goes as a whole", "Leave it out, or name a fluid"});
+  return named(name, names_of(scene.regions), "region", where, errors);
+}
+
+/// What `then` lists, or the one thing that it is.
+void read_acts(const Reading& reading, const json& step, const std::string& owner, std::vector<TaskAct>& acts,
+               std::vector<Error>& errors) {
+  if (!step.contains("then") || step["then"].is_null()) return;
+  const Scene& scene = reading.scene;
+  const json list = step["then"].is_array() ? step["then"] : json::array({step["then"]});
+  if (list.size() > kMaxTaskActs)
+    errors.push_back({owner + ": extras.then", "is a list of more than " + std::to_string(kMaxTaskActs),
+                      "Share them out over several steps"});
+  std::vector<std::string> things;
+  for (std::size_t i = 0; i < thing_count(scene); ++i) things.push_back(thing_name(scene, i));
+  const std::vector<std::string> grips = names_of(scene.grips);
+  for (std::size_t i = 0; i < std::min(list.size(), kMaxTaskActs); ++i) {
+    const std::string where = owner + ": extras.then[" + std::to_string(i) + "]";
+    TaskAct act;
+    int kinds = 0;
+    if (list[i].is_object()) {
+      gltf::Extras fields(list[i], where);
+      for (const ActField& field : kActFields) {
+        if (!fields.has(field.key)) continue;
+        kinds += 1;
+        act.kind = field.kind;
+        const bool of_hand = field.kind == TaskActKind::kHandTakes;
+        const std::string at = where + ": extras." + field.key;
+        act.thing = named(fields.text(field.key, ""), of_hand ? grips : things,
+                          of_hand ? "grip" : "body or fluid", at, errors);
+        if (of_hand)
+          act.other = named(fields.text("takes", ""), grips, "grip", where + ": extras.takes", errors);
+        else if (field.kind == TaskActKind::kTakesAway && fields.has("in"))
+          act.other = region_of_fluid(scene, fields.text("in", ""), act.thing, where + ": extras.in", errors);
+        else if (act.thing >= 0 && static_cast<std::size_t>(act.thing) < scene.bodies.size())
+          check_comes(scene.bodies[static_cast<std::size_t>(act.thing)], at, errors);
+      }
+      for (const std::vector<Error>& wrong : {fields.errors(), fields.foreign()})
+        errors.insert(errors.end(), wrong.begin(), wrong.end());
+    }
+    if (kinds != 1)
+      errors.push_back({where, "is nothing that can happen",
+                        "Give one of {\"appears\": \"butter\"}, {\"takes_away\": \"bowl\"}, "
+                        "{\"hand\": \"whisk\", \"takes\": \"spatula\"}"});
+    acts.push_back(act);
+  }
+}
+
 }  // namespace
 
 Problem read_task(Reading& reading) {
@@ -175,7 +248,9 @@ Problem read_task(Reading& reading) {
       goals.errors.push_back({where, "is no step", "Give one as {\"say\": \"…\", \"until\": {…}}"});
       continue;
     }
-    gltf::Extras fields(steps[i], where);
+    json own = steps[i];
+    own.erase("then");  // a list, which Extras has none of
+    gltf::Extras fields(own, where);
     TaskStep step;
     step.say = clean_text(fields.text("say", ""), kMaxWords);
     step.hint = clean_text(fields.text("hint", ""), kMaxWords);
@@ -185,6 +260,7 @@ Problem read_task(Reading& reading) {
     if (step.say.empty())
       fields.fail("say", "is missing", "Give a sentence that tells the person what to do");
     const json* until = fields.object("until");
+    read_acts(reading, steps[i], where, step.then, goals.errors);
     if (until)
       step.until = goals.read(*until, where + ": extras.until");
     else

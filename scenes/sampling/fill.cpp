@@ -13,7 +13,7 @@
 #include "scenes/mesh/united.h"
 #include "scenes/mesh/winding.h"
 #include "scenes/sampling/place.h"
-#include "scenes/sampling/point_grid.h"
+#include "sim/math/point_grid.h"
 
 namespace slosh::sampling {
 namespace {
@@ -306,84 +306,128 @@ Error no_particle(const std::string& where, const TriangleMesh& mesh, double vol
           "Make the fluid's mesh larger, or the scene's spacing_max_m smaller"};
 }
 
+/// Adds the particles of one volume. Where volumes that are there at the start overlap, the first one wins.
+std::optional<Error> fill_volume(const Scene& scene, std::size_t index_of_volume,
+                                 std::vector<Obstacle>& obstacles, SampledScene& sampled,
+                                 FilledVolume& filled) {
+  using gltf::short_number;
+  const FluidVolume& volume = scene.fluid_volumes[index_of_volume];
+  const double spacing = sampled.spacing;
+  const double clear = kClear * spacing;
+  const std::string where = place_of(scene, "node '" + volume.name + "'");
+  const TriangleMesh& mesh = scene.meshes[volume.mesh];
+  const Up up = up_of(scene.gravity, volume.pose);
+  const mesh::Grid grid = lattice(mesh, spacing, up);
+  if (static_cast<double>(grid.size.x) * grid.size.y * grid.size.z > kMaxPoints) {
+    return Error{where,
+                 "would take more than 30 million lattice points at a spacing of " +
+                     short_number(1000.0 * spacing) + " mm",
+                 "Choose a larger spacing (the scene's spacing_min_m)"};
+  }
+  const std::vector<std::int8_t> winding = mesh::winding_numbers(mesh, grid);
+  const PointGrid earlier(volume.starts_away ? std::vector<glm::vec3>() : sampled.fluid_positions,
+                          static_cast<float>(0.9 * spacing));
+  for (Obstacle& o : obstacles) o.overlaps = 0;
+  std::size_t shared = 0;  // with an earlier fluid, to which this one gives way
+  const auto is_free = [&](const glm::dvec3& point) {
+    if (!clear_of(obstacles, point, clear)) return false;
+    bool taken = false;
+    earlier.each_near(glm::vec3(point), [&](std::uint32_t other) {
+      taken = taken || glm::distance(sampled.fluid_positions[other], glm::vec3(point)) < 0.9 * spacing;
+    });
+    shared += taken;
+    return !taken;
+  };
+  Filling filling{grid, volume.pose, up, {}, {}, 0};
+  std::size_t index = 0;
+  for (int k = 0; k < grid.size.z; ++k) {
+    for (int j = 0; j < grid.size.y; ++j) {
+      for (int i = 0; i < grid.size.x; ++i, ++index) {
+        if (winding[index] <= 0) continue;
+        ++filling.inside;
+        const glm::ivec3 node(i, j, k);
+        const glm::dvec3 point = filling.at(node);
+        if (is_free(point)) filling.add(node);
+      }
+    }
+  }
+  std::size_t overlapping = 0;
+  for (const Obstacle& o : obstacles) {
+    overlapping += o.overlaps;
+    if (static_cast<double>(o.overlaps) <= kMaxOverlap * static_cast<double>(filling.inside)) continue;
+    return Error{
+        where,
+        "overlaps the body '" + scene.bodies[o.body].name + "': " +
+            short_number(100.0 * static_cast<double>(o.overlaps) / static_cast<double>(filling.inside)) +
+            " % of the fluid starts inside it",
+        "Make the fluid's mesh smaller, so that it ends at the wall's surface"};
+  }
+  const double cell = spacing * spacing * spacing;
+  const mesh::MeshTree tree(mesh);
+  filled.mesh = closed_volume(mesh);
+  filled.in_bodies = overlapping > 0 ? cell * buried_cells(filling, tree, obstacles, winding) : 0.0;
+  filled.in_others = cell * static_cast<double>(shared);
+  // What the mesh holds, whatever the lattice made of it.
+  const double wanted = std::max(0.0, (filled.mesh - filled.in_bodies - filled.in_others) / cell);
+  const auto count = static_cast<std::size_t>(std::llround(wanted));
+  if (!filling.nodes.empty() && filling.nodes.size() < count) {
+    const std::size_t left = pile_up(filling, count - filling.nodes.size(), is_free);
+    filled.no_place = cell * static_cast<double>(grow(filling, tree, left, is_free));
+  } else if (filling.nodes.size() > count) {
+    trim(filling, tree, filling.nodes.size() - count);
+  }
+  filled.sampled = cell * static_cast<double>(filling.nodes.size());
+  const std::vector<glm::vec3>& kept = filling.positions;
+  sampled.fillings[index_of_volume] = {static_cast<std::uint32_t>(sampled.fluid_positions.size()),
+                                       static_cast<std::uint32_t>(kept.size()), 0, 0};
+  if (kept.empty()) return no_particle(where, mesh, filled.mesh, filled.in_others, spacing);
+  sampled.fluid_positions.insert(sampled.fluid_positions.end(), kept.begin(), kept.end());
+  sampled.fluid_velocities.resize(sampled.fluid_positions.size(), glm::vec3(volume.velocity));
+  sampled.fluid_index.resize(sampled.fluid_positions.size(), static_cast<std::uint8_t>(volume.fluid));
+  return std::nullopt;
+}
+
+/// What later fillings have room for lies where the first one does, and is not there yet.
+void add_spares(const Scene& scene, SampledScene& sampled) {
+  for (std::size_t v = 0; v < scene.fluid_volumes.size(); ++v) {
+    FillingIds& ids = sampled.fillings[v];
+    ids.spare_first = static_cast<std::uint32_t>(sampled.fluid_positions.size());
+    ids.spare_count = ids.count * static_cast<std::uint32_t>(scene.fluid_volumes[v].fillings - 1);
+    for (std::uint32_t i = 0; i < ids.spare_count; ++i)
+      sampled.fluid_positions.push_back(sampled.fluid_positions[ids.first + i % ids.count]);
+    sampled.fluid_velocities.resize(sampled.fluid_positions.size(), glm::vec3(0.0f));
+    sampled.fluid_index.resize(sampled.fluid_positions.size(),
+                               static_cast<std::uint8_t>(scene.fluid_volumes[v].fluid));
+  }
+}
+
 }  // namespace
 
 std::optional<Error> fill_fluids(const Scene& scene, SampledScene& sampled, SampleReport* report) {
-  using gltf::short_number;
-  const double spacing = sampled.spacing;
-  const double clear = kClear * spacing;
-  std::vector<Obstacle> obstacles = find_obstacles(scene, sampled, clear);
-  for (const FluidVolume& volume : scene.fluid_volumes) {
-    const std::string where = place_of(scene, "node '" + volume.name + "'");
-    const TriangleMesh& mesh = scene.meshes[volume.mesh];
-    const Up up = up_of(scene.gravity, volume.pose);
-    const mesh::Grid grid = lattice(mesh, spacing, up);
-    if (static_cast<double>(grid.size.x) * grid.size.y * grid.size.z > kMaxPoints) {
-      return Error{where,
-                   "would take more than 30 million lattice points at a spacing of " +
-                       short_number(1000.0 * spacing) + " mm",
-                   "Choose a larger spacing (the scene's spacing_min_m)"};
+  const double clear = kClear * sampled.spacing;
+  std::vector<Obstacle> all = find_obstacles(scene, sampled, clear), there;
+  for (const Obstacle& o : all)
+    if (!scene.bodies[o.body].starts_away) there.push_back(o);
+  sampled.fillings.resize(scene.fluid_volumes.size());
+  std::vector<FilledVolume> filled(scene.fluid_volumes.size());
+  // Those that come later last, so that nothing gives way to them.
+  for (const bool later : {false, true}) {
+    for (std::size_t v = 0; v < scene.fluid_volumes.size(); ++v) {
+      if (scene.fluid_volumes[v].starts_away != later) continue;
+      if (auto problem = fill_volume(scene, v, later ? all : there, sampled, filled[v])) return problem;
     }
-    const std::vector<std::int8_t> winding = mesh::winding_numbers(mesh, grid);
-    const PointGrid earlier(sampled.fluid_positions, static_cast<float>(0.9 * spacing));
-    for (Obstacle& o : obstacles) o.overlaps = 0;
-    std::size_t shared = 0;  // with an earlier fluid, to which this one gives way
-    const auto is_free = [&](const glm::dvec3& point) {
-      if (!clear_of(obstacles, point, clear)) return false;
-      bool taken = false;
-      earlier.each_near(glm::vec3(point), [&](std::uint32_t other) {
-        taken = taken || glm::distance(sampled.fluid_positions[other], glm::vec3(point)) < 0.9 * spacing;
-      });
-      shared += taken;
-      return !taken;
-    };
-    Filling filling{grid, volume.pose, up, {}, {}, 0};
-    std::size_t index = 0;
-    for (int k = 0; k < grid.size.z; ++k) {
-      for (int j = 0; j < grid.size.y; ++j) {
-        for (int i = 0; i < grid.size.x; ++i, ++index) {
-          if (winding[index] <= 0) continue;
-          ++filling.inside;
-          const glm::ivec3 node(i, j, k);
-          const glm::dvec3 point = filling.at(node);
-          if (is_free(point)) filling.add(node);
-        }
-      }
-    }
-    std::size_t overlapping = 0;
-    for (const Obstacle& o : obstacles) {
-      overlapping += o.overlaps;
-      if (static_cast<double>(o.overlaps) <= kMaxOverlap * static_cast<double>(filling.inside)) continue;
-      return Error{
-          where,
-          "overlaps the body '" + scene.bodies[o.body].name + "': " +
-              short_number(100.0 * static_cast<double>(o.overlaps) / static_cast<double>(filling.inside)) +
-              " % of the fluid starts inside it",
-          "Make the fluid's mesh smaller, so that it ends at the wall's surface"};
-    }
-    const double cell = spacing * spacing * spacing;
-    const mesh::MeshTree tree(mesh);
-    FilledVolume filled;
-    filled.mesh = closed_volume(mesh);
-    filled.in_bodies = overlapping > 0 ? cell * buried_cells(filling, tree, obstacles, winding) : 0.0;
-    filled.in_others = cell * static_cast<double>(shared);
-    // What the mesh holds, whatever the lattice made of it.
-    const double wanted = std::max(0.0, (filled.mesh - filled.in_bodies - filled.in_others) / cell);
-    const auto count = static_cast<std::size_t>(std::llround(wanted));
-    if (!filling.nodes.empty() && filling.nodes.size() < count) {
-      const std::size_t left = pile_up(filling, count - filling.nodes.size(), is_free);
-      filled.no_place = cell * static_cast<double>(grow(filling, tree, left, is_free));
-    } else if (filling.nodes.size() > count) {
-      trim(filling, tree, filling.nodes.size() - count);
-    }
-    filled.sampled = cell * static_cast<double>(filling.nodes.size());
-    if (report) report->volumes.push_back(filled);
-    const std::vector<glm::vec3>& kept = filling.positions;
-    if (kept.empty()) return no_particle(where, mesh, filled.mesh, filled.in_others, spacing);
-    sampled.fluid_positions.insert(sampled.fluid_positions.end(), kept.begin(), kept.end());
-    sampled.fluid_velocities.resize(sampled.fluid_positions.size(), glm::vec3(volume.velocity));
-    sampled.fluid_index.resize(sampled.fluid_positions.size(), static_cast<std::uint8_t>(volume.fluid));
   }
+  double room = 0.0;
+  for (std::size_t v = 0; v < filled.size(); ++v) {
+    room += double{1.0} * sampled.fillings[v].count * scene.fluid_volumes[v].fillings;
+    if (room > kMaxPoints)
+      return Error{place_of(scene, "node '" + scene.fluid_volumes[v].name + "'"),
+                   "has room for " + std::to_string(scene.fluid_volumes[v].fillings) +
+                       " fillings: more than 30 million particles with the others",
+                   "Lower its fillings, or choose a larger spacing"};
+  }
+  add_spares(scene, sampled);
+  if (report) report->volumes = std::move(filled);
   return std::nullopt;
 }
 

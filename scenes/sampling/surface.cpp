@@ -6,7 +6,7 @@
 #include <random>
 
 #include "scenes/mesh/closed.h"
-#include "scenes/sampling/point_grid.h"
+#include "sim/math/point_grid.h"
 
 namespace slosh::sampling {
 namespace {

@@ -59,6 +59,12 @@ class BodySystem {
   /// on. After move(). Returns StatusBits.
   std::uint32_t part_with_lost(const glm::dvec3& gravity);
 
+  /// Between steps: puts a body, by its number, out of the world, or one that is away in.
+  void take_away(int body) { put_away(bodies_[static_cast<std::size_t>(body)]); }
+  void bring(int body, const RigidBody& as) { bodies_[static_cast<std::size_t>(body)] = as; }
+  const ContactFinder& shapes() const { return finder_; }
+  const DrivenBodies& driven() const { return driven_; }
+
   /// Multiplies the velocities of the bodies that a hand holds, itself or by joints, by `keep`.
   void damp_held(double keep);
 

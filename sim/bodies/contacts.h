@@ -30,6 +30,10 @@ class ContactFinder {
   void find(const std::vector<RigidBody>& bodies, const std::vector<BodySolve>& solves, double margin,
             double dt, const ContactMemory& memory, std::vector<Contact>& contacts);
 
+  /// Of a body's surface, in its mesh frame; none of a probe.
+  std::span<const glm::vec3> points(int body) const { return shapes_[static_cast<std::size_t>(body)].points; }
+  DistanceFieldView field(int body) const { return shapes_[static_cast<std::size_t>(body)].field.view(); }
+
  private:
   // Points that lie together.
   struct Cluster {

@@ -49,6 +49,10 @@ DrivenBodies::DrivenBodies(const Scene& scene, const SampledScene& sampled) {
 void DrivenBodies::drive(std::vector<RigidBody>& bodies, double until, double dt) {
   for (Driven& driven : driven_) {
     RigidBody& body = bodies[static_cast<std::size_t>(driven.body)];
+    if (body.gone) {
+      stand(body, driven);
+      continue;
+    }
     driven.target = pose_at(driven.keys, driven.repeats, until);
     body.velocity = (driven.target.position - body.position) / dt;
     body.angular_velocity = rotation_between(body.orientation, driven.target.orientation) / dt;
@@ -56,11 +60,17 @@ void DrivenBodies::drive(std::vector<RigidBody>& bodies, double until, double dt
 }
 
 void DrivenBodies::stand(std::vector<RigidBody>& bodies) {
-  for (Driven& driven : driven_) {
-    RigidBody& body = bodies[static_cast<std::size_t>(driven.body)];
-    driven.target = {body.position, body.orientation};
-    body.velocity = body.angular_velocity = glm::dvec3(0.0);
-  }
+  for (Driven& driven : driven_) stand(bodies[static_cast<std::size_t>(driven.body)], driven);
+}
+
+void DrivenBodies::stand(RigidBody& body, Driven& driven) {
+  driven.target = {body.position, body.orientation};
+  body.velocity = body.angular_velocity = glm::dvec3(0.0);
+}
+
+Pose DrivenBodies::pose_of(int body, double time) const {
+  const Driven& driven = of(body);
+  return pose_at(driven.keys, driven.repeats, time);
 }
 
 void DrivenBodies::move(std::vector<RigidBody>& bodies) const {

@@ -21,6 +21,8 @@ class DrivenBodies {
   /// Gives each the twist that takes it within `dt` s from where it is to where its keys have it at the time
   /// `until` s of the world.
   void drive(std::vector<RigidBody>& bodies, double until, double dt);
+  /// Where the keys of a driven body have it at `time` s of the world.
+  Pose pose_of(int body, double time) const;
   /// Each stands where it is in the next sub-step.
   void stand(std::vector<RigidBody>& bodies);
   /// Where the sub-step that was driven takes them.
@@ -41,6 +43,7 @@ class DrivenBodies {
     Pose target;         // at the end of the sub-step
   };
   const Driven& of(int body) const;
+  static void stand(RigidBody& body, Driven& driven);
 
   std::vector<Driven> driven_;
   double mass_ = 0.0;  // kg that they count as

@@ -18,7 +18,14 @@ RigidBody make_rigid_body(const Body& source) {
     body.angular_velocity = body.point ? glm::dvec3(0.0) : source.twist.angular;
     body.angular_momentum = body.world_inertia() * body.angular_velocity;
   }
+  if (source.starts_away) put_away(body);
   return body;
+}
+
+void put_away(RigidBody& body) {
+  body.gone = true;
+  body.position = glm::dvec3(kAway);
+  body.velocity = body.angular_momentum = body.angular_velocity = glm::dvec3(0.0);
 }
 
 }  // namespace slosh

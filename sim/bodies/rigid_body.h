@@ -12,9 +12,9 @@ struct RigidBody {
   bool free = false;
   bool point = false;   ///< translation only (a probe)
   bool driven = false;  ///< it goes by its keys (driven_bodies.h), and nothing acts on it
-  bool gone = false;  ///< it left for good (body_room.h): it stands where it was then, and nothing touches or
-                      ///< holds it
-  double mass = 0.0;  ///< kg
+  bool gone = false;    ///< it left for good (body_room.h) and stands where it was then, or is away (kAway);
+                        ///< nothing touches or holds it
+  double mass = 0.0;    ///< kg
   glm::dmat3 inertia{1.0};  ///< kg·m², about the centre of mass, body axes
   glm::dmat3 inverse_inertia{1.0};
   glm::dvec3 local_center{0.0};  ///< centre of mass in the mesh frame, m
@@ -39,6 +39,9 @@ struct RigidBody {
   }
 };
 
+/// As the scene has it, there or away.
 RigidBody make_rigid_body(const Body& body);
+/// `body` where what is away is kept, at rest.
+void put_away(RigidBody& body);
 
 }  // namespace slosh

@@ -14,6 +14,13 @@ struct Pose {
   glm::dquat orientation{1.0, 0.0, 0.0, 0.0};  // w, x, y, z
 };
 
+/// m, along each axis: where bodies are kept that are not in the world, as nothing else gets there
+/// (kFarthestPlace); whoever has a pose can tell.
+inline constexpr double kAway = 9000.0;
+inline bool is_away(const Pose& pose) {
+  return pose.position.x > 0.8 * kAway && pose.position.y > 0.8 * kAway && pose.position.z > 0.8 * kAway;
+}
+
 /// Velocity of a frame: linear (m/s) of its origin, angular (rad/s), both in world axes.
 struct Twist {
   glm::dvec3 linear{0.0};

@@ -128,5 +128,37 @@ TEST(TaskOfAScene, ErrorsOfGoalsSayWhatIsMeant) {
   expect_edit_error(with_task(until(deep)), {"within more than 8"});
 }
 
+TEST(TaskOfAScene, SaysWhatComesAndGoesWhenAStepIsDone) {
+  const json acts = {{{"appears", "water"}},
+                     {{"takes_away", "water"}, {"in", "in cup"}},
+                     {{"takes_away", "cup"}},
+                     {{"hand", "handle"}, {"takes", "handle"}}};
+  const auto scene = test::load_edited(with_task(json::array({pour({{"then", acts}})})));
+  ASSERT_TRUE(scene) << scene.error().text();
+  std::string words;
+  for (const TaskAct& act : scene.value().task[0].then) words += in_words(act, scene.value()) + "; ";
+  EXPECT_EQ(words,
+            "water appears; water in in cup is taken away; cup is taken away; the hand at handle takes "
+            "handle; ");
+  const auto one = test::load_edited(with_task(json::array({pour({{"then", {{"appears", "cup"}}}})})));
+  ASSERT_TRUE(one) << one.error().text();
+  EXPECT_EQ(one.value().task[0].then.size(), 1u);
+}
+
+TEST(TaskOfAScene, WhatCannotComeOrGoIsSaidWithItsPlace) {
+  const auto wrong = [](json act, std::vector<std::string> words) {
+    words.insert(words.begin(), "extras.task[0]: extras.then[0]");
+    expect_edit_error(with_task(json::array({pour({{"then", json::array({std::move(act)})}})})), words);
+  };
+  wrong({{"appears", "watr"}}, {"extras.appears", "body or fluid 'watr'", "Did you mean water?"});
+  wrong({{"takes_away", "water"}, {"in", "in cub"}}, {"extras.in", "region 'in cub'"});
+  wrong({{"takes_away", "cup"}, {"in", "in cup"}}, {"extras.in", "goes as a whole"});
+  wrong({{"hand", "left"}, {"takes", "handle"}}, {"extras.hand", "grip 'left'"});
+  wrong({{"hand", "handle"}}, {"extras.takes", "grip ''"});
+  wrong({{"appears", "cup"}, {"takes_away", "cup"}}, {"is nothing that can happen", "appears"});
+  wrong("cup", {"is nothing that can happen"});
+  wrong({{"apears", "cup"}}, {"is nothing that can happen"});
+}
+
 }  // namespace
 }  // namespace slosh

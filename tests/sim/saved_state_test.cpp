@@ -120,11 +120,11 @@ TEST(SavedWorld, OfTheVersionBeforeGoesOnToTheBit) {
   run(whole, 60);
   Bytes bytes = saved(whole);
   run(whole, 120);
-  // Without the count of lost particles, behind tick, status, gravity and age.
+  // Without the counts of lost and of waiting particles, behind tick, status, gravity and age.
   constexpr std::uint32_t kEarlier = 5;
   constexpr std::ptrdiff_t kCount = 2 * 4 + 10 * 8 + 8 + 4 + 8 + 8;
   std::memcpy(bytes.data() + 4, &kEarlier, 4);
-  bytes.erase(bytes.begin() + kCount, bytes.begin() + kCount + 8);
+  bytes.erase(bytes.begin() + kCount, bytes.begin() + kCount + 16);
   World again = world_of(tank);
   const Result<bool> restored = again.restore(bytes);
   ASSERT_TRUE(restored) << restored.error().text();

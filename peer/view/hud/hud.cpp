@@ -107,7 +107,7 @@ void Hud::record(const Snapshot& snapshot) {
     if (snapshot.rigid.status & (1u << bit)) status_until_[bit] = time_ + kStatusSeconds;
   }
   const auto left = std::count(snapshot.fluid_index.begin(), snapshot.fluid_index.end(), std::uint8_t{255});
-  left_ = static_cast<std::uint64_t>(left);
+  left_ = static_cast<std::uint64_t>(std::max<std::int64_t>(0, left - snapshot.rigid.waiting));
   for (std::size_t i = 0; i < hands_.size() && i < snapshot.rigid.grips.size(); ++i) {
     Hand& hand = hands_[i];
     hand.now = snapshot.rigid.grips[i].on_hand;

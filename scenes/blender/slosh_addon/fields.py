@@ -31,6 +31,7 @@ FIELDS = {
     "body": [
         ("motion", "", ["fixed", "free", "driven"], None, None,
          "fixed: it stands; free: it falls, or is carried; driven: it goes by its keys"),
+        ("starts_away", "", False, None, None, "Not there before a step of the task, or a command, brings it"),
         ("repeat", "", False, None, None, "A driven body's keys begin again after the last"),
         ("mass_kg", "kg", 0.5, 1e-6, None, "Of a free body: this or its density"),
         ("density_kg_m3", "kg/m3", 1000.0, 1e-6, 1e6, "Of a free body, in place of its mass"),
@@ -65,6 +66,8 @@ FIELDS = {
         ("melts_above_c", "C", 35.0, -273.15, 5000.0, "It melts where it is as warm"),
         ("melts_in_s", "s", 5.0, 1e-6, 86400.0, "How long it takes to melt there"),
         ("starts_set", "", False, None, None, "It has set at the start"),
+        ("starts_away", "", False, None, None, "Empty before a step of the task, or a command, fills it"),
+        ("fillings", "", 2.0, 1.0, 1000.0, "So many times it can be filled, the start counted"),
         *MOVES,
     ],
     "grip": [

@@ -7,7 +7,7 @@
 #include <glm/glm.hpp>
 #include <vector>
 
-namespace slosh::sampling {
+namespace slosh {
 
 /// Finds points within one cell's width. Visiting order is fixed by the points alone.
 class PointGrid {
@@ -73,4 +73,4 @@ class PointGrid {
   std::vector<std::uint32_t> sorted_;
 };
 
-}  // namespace slosh::sampling
+}  // namespace slosh
