@@ -40,6 +40,20 @@ PlotSheet sheet_of(const Stage& stage, const ShowOptions& options, const RunSumm
   return sheet;
 }
 
+/// The run's row, and the last runs of the scene for comparison.
+void keep_score(const std::string& file, RunSummary& summary) {
+  constexpr std::size_t kShown = 5;
+  const Score score = score_of(summary);
+  const Result<bool> kept = append_score(file, score);
+  if (!kept) return summary.problems.push_back("the score: " + kept.error().text());
+  const Result<std::vector<Score>> all = read_scores(file);
+  if (!all) return;
+  for (const Score& each : all.value())
+    if (each.scene == score.scene) summary.scores.push_back(each);
+  if (summary.scores.size() > kShown)
+    summary.scores.erase(summary.scores.begin(), summary.scores.end() - std::ptrdiff_t{kShown});
+}
+
 }  // namespace
 
 int finish_run(const Stage& stage, const ShowOptions& options, Progress& progress, RunSummary& summary) {
@@ -70,6 +84,7 @@ int finish_run(const Stage& stage, const ShowOptions& options, Progress& progres
       summary.problems.push_back(written.error().text());
     }
   }
+  if (!options.score.empty()) keep_score(options.score, summary);
   progress.end();
   std::printf("%s", in_words(summary).c_str());
   std::fflush(stdout);

@@ -46,6 +46,18 @@ constexpr const char* kExamples =
     "  slosh play pool --particles 1e6 --headless --sim-gpu 0 --render-gpu 1\n"
     "  slosh play bucket --headless --device replay:out/bucket/poses.csv";
 
+/// Before the run, which would be played for nothing.
+std::optional<Error> no_score(const PlayOptions& options, const Scene& scene) {
+  if (options.score.empty()) return std::nullopt;
+  if (scene.task.empty())
+    return Error{"--score", "the scene '" + scene.name + "' has no guided task to score",
+                 "Leave it out, or play one that has (crepe, pour); scenes/TASKS.md tells how to make one"};
+  std::error_code unknown;
+  if (!std::filesystem::exists(options.score, unknown)) return std::nullopt;
+  const Result<std::vector<Score>> there = read_scores(options.score);
+  return there ? std::nullopt : std::optional<Error>(there.error());
+}
+
 int play(PlayOptions options) {
   end_at_interrupts();
   Progress progress;
@@ -56,6 +68,7 @@ int play(PlayOptions options) {
   Result<Prepared> prepared = prepare(options, headless, progress);
   if (!prepared) return fail(prepared.error(), progress);
   const Prepared& p = prepared.value();
+  if (const std::optional<Error> problem = no_score(options, p.scene)) return fail(*problem, progress);
   const MakeRun make_run = [&]() -> Result<std::unique_ptr<LiveRun>> {
     Result<DeviceSet> devices = make_devices(p.scene, options.devices, !headless, options.controllers);
     if (!devices) return devices.error();
@@ -90,6 +103,10 @@ void add_play(CLI::App& app, VerbRun& chosen) {
                    "one for all handles, or one "
                    "each; `slosh devices` lists what is there")
       ->allow_extra_args(false);
+  verb->add_option(
+      "--score", o->score,
+      "Add a row to this table (CSV) at the end: what the run of the scene's guided task came to, "
+      "told\nbeside the last runs; `slosh report task` draws it");
   verb->add_option("--record", o->record, "Keep the run's inputs and states in a file, for `slosh replay`");
   verb->add_flag("--unpaced", o->unpaced,
                  "As fast as the machine goes, bitwise identical each time; headless, for measuring");

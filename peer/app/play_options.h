@@ -36,6 +36,9 @@ struct ShowOptions {
   bool vr = false;      ///< a headset is asked for
   HeadsetWish headset;
   std::shared_ptr<HeadsetLink> controllers;  ///< of the headset that was found; null without one
+  std::string ghost;                         ///< folder or poses.csv of an earlier run; empty = none
+  double guide = 0.0;                        ///< N, the most that leads a hand to where the ghost's is
+  std::string score;                         ///< table that a run of a task adds a row to; empty = none
   std::string plot = "png";                  ///< of plot_formats()
   std::vector<std::string> curves;           ///< of plot_quantities(); empty = chosen
   double measure =

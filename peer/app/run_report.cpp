@@ -1,5 +1,7 @@
 #include "peer/app/run_report.h"
 
+#include "sim/math/format.h"
+
 namespace slosh {
 
 Spread spread_of(const Histogram& histogram, double unit) {
@@ -34,6 +36,7 @@ void report_left(const Diagnostics& end, const Diagnostics& start, const Plan& p
   s.retired_settling = start.retired;
   s.lost_settling = start.lost;
   s.walls_hold = plan.walls_hold();
+  s.fluid_came = start.particles + start.retired != end.particles + end.retired;
   s.fluid_mass_start = start.mass;
   s.fluid_mass_end = end.mass;
 }
@@ -44,6 +47,12 @@ void report_task(const Scene& scene, const std::vector<TaskState::Done>& done, R
     if (step.done) {
       step.late = done[i].late;
       step.took = done[i].took;
+      const std::vector<const Goal*> leaves = leaves_of(scene.task[i].until);
+      for (std::size_t k = 0; k < leaves.size() && k < done[i].measured.size(); ++k) {
+        const char* unit = unit_of(leaves[k]->kind);
+        step.measured.push_back(measured_in_words(*leaves[k], scene) +
+                                format(" %.3g%s%s", done[i].measured[k], *unit ? " " : "", unit));
+      }
     }
     summary.task.push_back(std::move(step));
   }

@@ -64,6 +64,8 @@ void Recorder::drain() {
     Peak& peak = peaks_[s.device];
     peak.force = std::max(peak.force, glm::length(s.on_hand.force));
     peak.torque = std::max(peak.torque, glm::length(s.on_hand.torque));
+    if (const double force = glm::length(s.on_hand.force); force > 0.0)
+      peak.mean_force += (force - peak.mean_force) / static_cast<double>(++peak.felt);
     if (!wrenches_) continue;
     const glm::dvec3& f = s.on_hand.force;
     const glm::dvec3& t = s.on_hand.torque;

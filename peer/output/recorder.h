@@ -17,10 +17,12 @@ namespace slosh {
 
 constexpr const char* kWrenchesHeader = "time_s,device,fx_n,fy_n,fz_n,tx_nm,ty_nm,tz_nm";
 
-/// The largest wrench that each hand felt.
+/// The largest wrench that each hand felt, and its mean force.
 struct Peak {
-  double force = 0.0;   ///< N
-  double torque = 0.0;  ///< N·m
+  double force = 0.0;       ///< N
+  double torque = 0.0;      ///< N·m
+  double mean_force = 0.0;  ///< N, over the samples in which it felt any
+  std::uint64_t felt = 0;   ///< of these, how many
 };
 
 /// Drains a servo's samples on a thread of its own, some twenty times a second, and flushes: what was written

@@ -89,12 +89,14 @@ std::string left_words(const RunSummary& s) {
   const std::uint64_t lost_now = s.lost_particles - s.lost_settling;
   const std::uint64_t spilled_now = s.retired_particles - s.retired_settling - lost_now;
   const double gone = s.fluid_mass_start - s.fluid_mass_end;
-  const std::string mass = format(", %.3g of %.3g kg", gone, s.fluid_mass_start);
+  // What came while it ran, or was taken away, is in the difference.
+  const std::string mass =
+      s.fluid_came ? std::string() : format(", %.3g of %.3g kg", gone, s.fluid_mass_start);
   add(text, share_words(spilled_now, at_start, spilled), lost_now == 0 ? mass : "");
   add(text, share_words(lost_now, at_start, lost.c_str()),
       spilled_now == 0 ? mass : "; with what was spilled" + mass);
   // Measured: tests/peer/python/first_scene_test.py.
-  if (gone > kBounced * s.fluid_mass_start && gone < kPoured * s.fluid_mass_start)
+  if (!s.fluid_came && gone > kBounced * s.fluid_mass_start && gone < kPoured * s.fluid_mass_start)
     text +=
         "  (If it bounced off what it fell on: of a mug that spilled 4 %, \"model\": \"incompressible\" on "
         "the scene kept all but\n"
@@ -120,6 +122,7 @@ nlohmann::ordered_json task_json(const std::vector<TaskStepSummary>& task) {
     if (!step.done) continue;
     steps.back()["took_s"] = step.took;
     steps.back()["late"] = step.late;
+    steps.back()["measured"] = step.measured;
   }
   return steps;
 }
@@ -134,6 +137,7 @@ std::string task_words(const std::vector<TaskStepSummary>& task) {
     took += step.took;
     steps += step.done ? format("  %5.1f s  ", step.took) : std::string("  not done ");
     steps += step.say + (step.late ? " (late)\n" : "\n");
+    for (const std::string& measured : step.measured) steps += "           " + measured + "\n";
   }
   return format("Task: %zu of %zu steps done, in %.1f s.\n", done, task.size(), took) + steps;
 }
@@ -234,7 +238,10 @@ Json to_json(const RunSummary& s) {
   json["samples_lost"] = s.samples_lost;
   json["fluid_mass_kg"] = {{"start", s.fluid_mass_start}, {"end", s.fluid_mass_end}};
   if (s.measured.interval > 0.0) json["measured"] = to_json(s.measured);
-  if (!s.task.empty()) json["task"] = task_json(s.task);
+  if (!s.task.empty()) {
+    json["task"] = task_json(s.task);
+    json["task_spilled_kg"] = s.spilled_mass;
+  }
   json["devices"] = devices;
   json["backend"] = s.backend;
   json["threads"] = s.threads;
@@ -283,6 +290,7 @@ std::string in_words(const RunSummary& s) {
         s.frames_dropped == 0 ? "" : (std::string(", ") + grouped(s.frames_dropped) + " dropped").c_str());
   }
   text += task_words(s.task);
+  text += score_words(s.scores);
   text += left_words(s);
   if (s.particles_in_solids > 0)
     text += s.particles_in_solids == 1

@@ -11,6 +11,7 @@
 
 #include "peer/output/machine.h"
 #include "peer/output/measured.h"
+#include "peer/output/score.h"
 #include "sim/math/result.h"
 
 namespace slosh {
@@ -28,14 +29,16 @@ struct DeviceSummary {
   double peak_force = 0.0;   ///< N, on the hand
   double peak_torque = 0.0;  ///< N·m
   double clipped = 0.0;      ///< s in which more was asked of the device than it gives
+  double mean_force = 0.0;   ///< N, while it felt any; 0 = not known
 };
 
 /// A step of a guided task.
 struct TaskStepSummary {
   std::string say;
   bool done = false;
-  bool late = false;  ///< done, after its time
-  double took = 0.0;  ///< s
+  bool late = false;                    ///< done, after its time
+  double took = 0.0;                    ///< s
+  std::vector<std::string> measured{};  ///< what its goal measures, as it was met: "fluid in pan 0.21 kg"
 };
 
 /// What the network was like for a peer of somebody else's world.
@@ -108,10 +111,13 @@ struct RunSummary {
   std::uint64_t rejected_poses = 0;
   std::uint64_t samples_lost = 0;
   double fluid_mass_start = 0.0;  ///< kg, of the run: after settling
+  bool fluid_came = false;        ///< some appeared, or was taken away, while it ran
   double fluid_mass_end = 0.0;    ///< kg still in the world
   MeasuredRun measured;
   std::vector<DeviceSummary> devices;
   std::vector<TaskStepSummary> task;  ///< all of its steps; empty where the scene has none
+  double spilled_mass = 0.0;          ///< kg, with a task: in no region of the scene at the end, or out of it
+  std::vector<Score> scores{};        ///< the last runs of the scene, this one behind; empty without --score
   std::string backend;
   int threads = 1;
   Machine machine;

@@ -2,6 +2,7 @@
 // passes out saves, what a step costs by size, pictures.
 #include "tests/lab/verbs/report.h"
 
+#include <array>
 #include <ctime>
 #include <memory>
 
@@ -235,6 +236,19 @@ void add_report(CLI::App& app, VerbRun& chosen) {
       "  slosh report speed --from here/speed.csv --from there/speed.csv --out both");
   speed->callback(
       [&chosen, options, sizes] { chosen = [options, sizes] { return report_speed(*options, *sizes); }; });
+  CLI::App* task = verb->add_subcommand("task", "Learning over the runs of a guided task");
+  auto scores = std::make_shared<std::array<std::string, 3>>();
+  task->add_option("FILE", (*scores)[0], "The table that `slosh play --score FILE` wrote")->required();
+  task->add_option("--scene", (*scores)[1], "Of this scene's runs (the last run's)");
+  task->add_option("--out", (*scores)[2], "The picture (FILE with .png)");
+  task->footer(
+      "Draws time, time of each step, what was spilled and the forces on the hands over the runs, and lists "
+      "the\n"
+      "last twenty.\n\n"
+      "Examples:\n  slosh play crepe --score crepe.csv\n  slosh report task crepe.csv");
+  task->callback([&chosen, scores] {
+    chosen = [scores] { return report_task((*scores)[0], (*scores)[1], (*scores)[2]); };
+  });
   CLI::App* figure =
       verb->add_subcommand("figure", "A figure of the paper again, judged against the paper's words");
   auto which = std::make_shared<FigureOptions>();

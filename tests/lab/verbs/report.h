@@ -51,6 +51,10 @@ struct FigureOptions {
 };
 int report_figure(const ReportOptions& options, const FigureOptions& figure);
 
+/// Draws what scores (peer/output/score.h) came to, run after run. `wanted`: the scene, empty = the last
+/// run's; `out`: the picture, empty = beside the table.
+int report_task(const std::string& table, const std::string& wanted, const std::string& out);
+
 /// Whether a report has plots, which gnuplot draws, or only tables and pictures of the renderer's.
 enum class Draws : std::uint8_t { kPlots, kNoPlots };
 
