@@ -56,6 +56,13 @@ void add_never_a_window_option(CLI::App& verb, const std::string& text) {
 void add_show_options(CLI::App& verb, ShowOptions& options, bool has_window) {
   if (has_window) verb.add_flag("--headless", options.headless, "No window, even with a display");
   verb.add_option("--size", options.size, "Picture in pixels, WxH (1280x720)");
+  verb.add_option("--ghost", options.ghost,
+                  "Show the tools of an earlier run too, translucent, where its hands had them by then: its "
+                  "folder,\nor its poses.csv");
+  verb.add_option("--guide", options.guide,
+                  "Newtons, at most, that lead a hand to where the ghost's is: a force that never gives more "
+                  "energy\nthan it took (of devices that give force)")
+      ->check(in_range(0.0, 20.0));
   verb.add_flag("--stereo", options.stereo,
                 "A film in both eyes, side by side, each of that size (a headset's films are so anyway)");
   verb.add_option("--fps", options.frames_per_second, "Pictures a second of the film")

@@ -21,6 +21,7 @@ Result<std::unique_ptr<OwnHands>> OwnHands::create(const Stage& stage, DeviceSet
                                                    ServoOptions servo, const std::filesystem::path& folder) {
   servo.sample_interval = 1.0 / stage.row_rate;
   servo.signals = stage.signals;
+  servo.guided = stage.ghost;
   std::unique_ptr<OwnHands> hands(new OwnHands(stage, std::move(devices), channel, servo));
   Result<std::unique_ptr<Recorder>> recorder = Recorder::start(hands->servo_, folder);
   if (!recorder) return recorder.error();
@@ -86,7 +87,7 @@ void OwnHands::report(RunSummary& s) const {
     if (servo_.device(i) == nullptr) continue;
     const Peak& peak = recorder_->peaks()[i];
     s.devices.push_back({stage_.scene.grips[i].name, servo_.device(i)->kind(), peak.force, peak.torque,
-                         servo_.budget(i).clipped});
+                         servo_.budget(i).clipped, peak.mean_force});
   }
   for (const std::string& each : run_troubles(recorder_->problem(), servo_, stage_.scene))
     s.problems.push_back(each);

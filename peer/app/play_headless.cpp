@@ -135,6 +135,7 @@ Result<bool> show_headless(const Stage& stage, LiveRun& run, const ShowOptions& 
     view_options.stereo = options.stereo;
     view_options.frames_per_second = options.frames_per_second;
     view_options.folder = stage.folder;
+    view_options.ghost = stage.ghost;
     view_options.gpu = options.render_gpu;
     Result<std::unique_ptr<HeadlessView>> started = HeadlessView::start(
         stage.scene, run.facts(options.frames_per_second), run.snapshots(), run.rates(), view_options);

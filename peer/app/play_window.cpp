@@ -50,6 +50,7 @@ class WindowRun {
         controls_(stage.scene, run, painter_.camera(), std::move(keys), KeptViews(file_of_views(stage.scene)),
                   [&progress](const std::string& text) { progress.note(text); }) {
     controls_.filter = renderer.options().bilateral_iterations;
+    painter_.show_ghost(stage.ghost);
     for (const Error& what : painter_.left_out())
       progress.note("slosh: " + what.text() + "; the run goes on without it");
   }

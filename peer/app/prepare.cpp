@@ -17,6 +17,7 @@
 #include "peer/app/state_folder.h"
 #include "peer/app/time_estimate.h"
 #include "peer/haptics/make_device.h"
+#include "peer/haptics/script_device.h"
 #include "peer/output/summary.h"
 #include "scenes/load.h"
 #include "sim/math/format.h"
@@ -161,6 +162,7 @@ Result<bool> set_stage(const ShowOptions& options, bool headless, Stage& stage) 
                   : headless            ? stage.scene.duration
                                         : std::numeric_limits<double>::infinity();
   if (const Result<bool> exports = set_exports(options, stage); !exports) return exports.error();
+  if (const Result<bool> ghost = set_ghost(options, stage); !ghost) return ghost.error();
   Result<RunFolder> folder = take_folder(options, stage.scene, headless);
   if (!folder) return folder.error();
   if (!stage.exports.empty() && folder.value().path().empty())
@@ -168,6 +170,28 @@ Result<bool> set_stage(const ShowOptions& options, bool headless, Stage& stage) 
   stage.claim = folder.value();
   stage.folder = stage.claim.path();
   set_measure(options, stage);
+  return true;
+}
+
+Result<bool> set_ghost(const ShowOptions& options, Stage& stage) {
+  if (options.ghost.empty()) {
+    if (options.guide > 0.0)
+      return Error{"--guide", "has no ghost to lead to", "Give a run with --ghost too"};
+    return true;
+  }
+  std::error_code unknown;
+  std::filesystem::path file = options.ghost;
+  if (std::filesystem::is_directory(file, unknown)) file /= "poses.csv";
+  std::optional<Error> none;
+  for (std::size_t i = 0; i < stage.scene.grips.size(); ++i) {
+    Result<std::vector<PoseKey>> way = read_poses(file, static_cast<int>(i));
+    if (way)
+      stage.ghost.push_back({i, std::move(way.value()), options.guide});
+    else if (!none)
+      none = way.error();
+  }
+  if (stage.ghost.empty() && none) return *none;
+  if (stage.ghost.empty()) return Error{"--ghost", "the scene has no grip that a hand could hold", ""};
   return true;
 }
 

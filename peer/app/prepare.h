@@ -3,8 +3,10 @@
 
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include "peer/app/play_options.h"
+#include "peer/haptics/guidance.h"
 #include "peer/output/export/export_options.h"
 #include "peer/output/machine.h"
 #include "peer/output/progress.h"
@@ -31,6 +33,7 @@ struct Stage {
   double export_rate = 30.0;        ///< frames a simulated second
   double row_rate = 500.0;          ///< of hands, rows a simulated second
   bool signals = false;             ///< of hands, each tick of the device loop
+  std::vector<GuidedHand> ghost;    ///< hands of an earlier run, shown, and led to where `most` is above 0
 };
 
 struct Prepared : Stage {
@@ -64,6 +67,10 @@ constexpr double kLongSampling = 5.0;
 
 /// How often the instruments of `stage` are read: never without a folder to write to.
 void set_measure(const ShowOptions& options, Stage& stage);
+
+/// The hands of an earlier run that `--ghost` names, one a grip that it has. Errors: it cannot be read, or
+/// has none; `--guide` without it.
+Result<bool> set_ghost(const ShowOptions& options, Stage& stage);
 
 /// What `stage` is to export. Errors: a word that is none.
 Result<bool> set_exports(const ShowOptions& options, Stage& stage);

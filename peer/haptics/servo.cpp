@@ -43,9 +43,22 @@ Servo::Servo(const Scene& scene, std::vector<std::unique_ptr<Device>> devices, C
         CouplingGains{grip.stiffness, grip.damping, grip.rotational_stiffness, grip.rotational_damping},
         grip_start(scene, i));
     hand.body = grip.body;
+    for (const GuidedHand& guided : options_.guided)
+      if (guided.grip == i && guided.most > 0.0) hand.guide.emplace(guided.way, guided.most);
     if (devices[i]) (void)set_device(i, std::move(devices[i]));
     if (DevicePort* const port = claim_device(hand)) change_device(hand, port);
   }
+}
+
+// What leads the hand beside its coupling, in N.
+glm::dvec3 Servo::guidance(Hand& hand) noexcept {
+  if (!hand.guide) return glm::dvec3(0.0);
+  if (!hand.good.engaged || hand.leapt || !hand.port->device().gives_way()) {
+    hand.guide->restart();
+    return glm::dvec3(0.0);
+  }
+  return hand.guide->force(time_, hand.good.pose.position, hand.good.twist.linear, options_.period,
+                           hand.limits.max_damping);
 }
 
 Servo::~Servo() {
@@ -332,6 +345,7 @@ void Servo::tick(std::int64_t now_ns, bool fresh) noexcept {
                                               hand.limits.max_damping, pace_of(hand));
                               signals.coupled = wanted;
                               signals.guarded = port->device().gives_way() ? safe : wanted;
+                              signals.guarded.force += guidance(hand);
                               return signals.guarded;
                             });
       held_.sent(i, felt.wrench, hand.felt.holds(), hand.felt.held().pose, hand.felt.held().twist,

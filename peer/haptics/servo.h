@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <deque>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -13,6 +14,7 @@
 #include "peer/haptics/device_port.h"
 #include "peer/haptics/force_budget.h"
 #include "peer/haptics/force_rendering.h"
+#include "peer/haptics/guidance.h"
 #include "peer/haptics/held_bodies.h"
 #include "peer/haptics/sample_line.h"
 #include "peer/haptics/signal_sample.h"
@@ -28,7 +30,8 @@ struct ServoOptions {
   /// What every step put on the hands, in order, where the world is in this process; must outlive the servo.
   /// Null: what body states say, of which a busy loop misses some.
   Ring<StepWrench>* steps = nullptr;
-  bool signals = false;  ///< each hand's signals in each tick are kept for signals()
+  bool signals = false;              ///< each hand's signals in each tick are kept for signals()
+  std::vector<GuidedHand> guided{};  ///< hands that give way to the force and are led
 };
 
 /// tick() and let_go() belong to the device loop's thread and neither allocate, lock nor log. samples() has
@@ -116,6 +119,7 @@ class Servo {
     Pose start;
     int body = 0;
     ForceRendering felt;
+    std::optional<Guidance> guide;
     ForceBudgetNote budget;
     DeviceReport good;
     Wrench given;                // in the last tick
@@ -131,6 +135,7 @@ class Servo {
   bool parts(const Hand& hand, const DevicePort* wanted) const noexcept;
   bool is_gone(const BodySnapshot& bodies, int body) const noexcept;
   void free_unused(Hand& hand);
+  glm::dvec3 guidance(Hand& hand) noexcept;
   void follow_stiffness(std::size_t i, Hand& hand, const BodySnapshot& bodies, double elapsed) noexcept;
   void follow_run(const BodyMessage& message) noexcept;
   void follow_pace(const BodyMessage& message) noexcept;

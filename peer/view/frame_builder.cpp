@@ -16,6 +16,9 @@ constexpr float kHandRadius = 0.008f;       // m, the ball that marks a handle
 constexpr double kArrowLength = 0.15;       // of the view distance, for the largest force so far
 constexpr double kSmallestReference = 1.0;  // N: below it noise would be drawn large
 
+// Pale blue, a third of it seen.
+const MeshLook kGhostLook{{0.35f, 0.7f, 1.0f}, 0.0f, 0.5f, 0.3f};
+
 MeshLook look_of(const Material& m) {
   MeshLook look{m.base_color, m.metallic, m.roughness, m.opacity};
   look.emissive = m.emissive;
@@ -173,6 +176,27 @@ FrameBuilder::FrameBuilder(const Scene& scene, double spacing, MeshSink& meshes)
   }
 }
 
+void FrameBuilder::show_ghost(const std::vector<GuidedHand>& hands) {
+  ghosts_.clear();
+  for (const GuidedHand& hand : hands) {
+    if (hand.grip >= scene_.grips.size()) continue;
+    const int body = scene_.grips[hand.grip].body;
+    const auto there = std::ranges::find(placed_, body, &Placed::body);
+    if (there != placed_.end())
+      ghosts_.push_back({hand.grip, PoseTrack(hand.way, hand.way.front().pose), there->mesh});
+  }
+}
+
+void FrameBuilder::add_ghosts(const BodySnapshot& rigid, Frame& frame) {
+  for (Ghost& ghost : ghosts_) {
+    const Grip& grip = scene_.grips[ghost.grip];
+    const auto body = static_cast<std::size_t>(grip.body);
+    if (body >= rigid.bodies.size() || rigid.bodies[body].away()) continue;
+    const Pose pose = compose(ghost.way.at(rigid.time).pose, inverse(grip.pose));
+    frame.meshes.push_back({ghost.mesh, model_matrix(pose), kGhostLook});
+  }
+}
+
 Frame FrameBuilder::build(const Snapshot& snapshot, double view_distance) {
   Frame frame;
   frame.light_direction = scene_.light_direction;
@@ -195,6 +219,7 @@ Frame FrameBuilder::build(const Snapshot& snapshot, double view_distance) {
   for (const Placed& placed : placed_) {
     const auto body = static_cast<std::size_t>(placed.body);
     const bool moves = placed.body >= 0 && body < rigid.bodies.size();
+    if (moves && rigid.bodies[body].away()) continue;
     frame.meshes.push_back({placed.mesh, moves ? model_matrix(rigid.bodies[body].pose) : placed.model,
                             placed.look, moves ? wetness_.of(body) : Wetness{}});
   }
@@ -204,11 +229,13 @@ Frame FrameBuilder::build(const Snapshot& snapshot, double view_distance) {
     frame.meshes.push_back(
         {ball_, model_matrix(rigid.bodies[i].pose) * size, look_of(scene_.bodies[i].material)});
   }
+  add_ghosts(rigid, frame);
   for (const GripState& grip : rigid.grips) {
     reference_force_ = std::max({reference_force_, kSmallestReference, glm::length(grip.on_hand.force)});
   }
   for (std::size_t i = 0; i < rigid.grips.size(); ++i) {
     const GripState& grip = rigid.grips[i];
+    if (is_away(grip.pose)) continue;
     const glm::vec3 color = linear_color(device_color(i));
     const glm::mat4 size = glm::scale(glm::mat4(1.0f), glm::vec3(kHandRadius));
     frame.meshes.push_back({ball_, model_matrix(grip.handle) * size, {color, 0.0f, 0.45f, 1.0f}});

@@ -4,6 +4,7 @@
 #include <optional>
 #include <vector>
 
+#include "peer/haptics/guidance.h"
 #include "peer/view/body_walls.h"
 #include "peer/view/body_wetness.h"
 #include "render/frame.h"
@@ -22,6 +23,9 @@ class FrameBuilder {
   /// The returned frame points into `snapshot` and this, which must live until it is drawn. Without view and
   /// HUD. `view_distance` (m, eye to target) sizes the force arrows.
   Frame build(const Snapshot& snapshot, double view_distance);
+  /// From now on the bodies that these hands held are shown too, translucent, where a recorded run had them
+  /// by then: guidance's ways (peer/haptics/guidance.h).
+  void show_ghost(const std::vector<GuidedHand>& hands);
   /// A hand's controller at `pose`, so that one sees one's own hands.
   void add_controller(const Pose& pose, double scale, Frame& frame) const;
   /// Textures that are not shown because their picture cannot be unpacked, one an image.
@@ -34,11 +38,19 @@ class FrameBuilder {
     MeshLook look;
     glm::mat4 model;  // of a picture
   };
+  struct Ghost {
+    std::size_t grip;
+    PoseTrack way;  // of the handle
+    MeshHandle mesh;
+  };
   class Textures;
+
+  void add_ghosts(const BodySnapshot& rigid, Frame& frame);
 
   const Scene& scene_;
   std::vector<Error> left_out_;
   std::vector<Placed> placed_;
+  std::vector<Ghost> ghosts_;
   std::vector<FluidLook> fluids_;
   std::optional<BodyWalls> walls_;  // made when first asked for
   BodyWetness wetness_;

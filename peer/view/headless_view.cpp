@@ -78,6 +78,7 @@ void HeadlessView::run(const Setup& setup) {
     return;
   }
   Painter painter(setup.scene, setup.facts, renderer);
+  painter.show_ghost(options.ghost);
   report_.left_out = painter.left_out();
   SnapshotQueue& queue = setup.queue;
   RateLog& rates = setup.rates;

@@ -10,6 +10,7 @@
 
 #include "net/histogram.h"
 #include "net/snapshot_queue.h"
+#include "peer/haptics/guidance.h"
 #include "peer/view/hud/hud.h"
 #include "render/image.h"
 #include "render/renderer.h"
@@ -22,6 +23,7 @@ struct ViewOptions {
   bool stereo = false;              ///< both eyes side by side, each of that size
   double frames_per_second = 30.0;  ///< of the film
   int gpu = -1;                     ///< as HeadlessOptions::gpu
+  std::vector<GuidedHand> ghost{};  ///< as FrameBuilder::show_ghost
   std::filesystem::path folder;     ///< gets view.mp4 and final.png (Scene::still); must exist
 };
 

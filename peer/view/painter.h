@@ -33,6 +33,9 @@ class Painter {
         hud_(scene, facts),
         held_(scene) {}
 
+  /// As FrameBuilder's.
+  void show_ghost(const std::vector<GuidedHand>& hands) { builder_.show_ghost(hands); }
+
   /// A new snapshot for the charts and the foam.
   void record(const Snapshot& snapshot) {
     hud_.record(snapshot);
