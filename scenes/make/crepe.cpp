@@ -1,5 +1,5 @@
-// A crêpe: batter is stirred, poured into a hot pan, spread, and slides onto a plate once it has set
-// (paper, section 6.5).
+// A crêpe: batter is stirred, poured into a hot pan, spread, pressed flat once it has set, and slid onto a
+// plate, where butter melts on it and syrup is poured (paper, section 6.5).
 #include <cmath>
 #include <glm/gtc/constants.hpp>
 
@@ -23,11 +23,18 @@ constexpr double kCrepeRadius = 0.105;  ///< inner, of its floor
 constexpr double kCrepeRim = 0.128, kCrepeDepth = 0.024;
 constexpr double kCrepeHeld = 0.05;
 constexpr double kHobTop = 0.04;
-constexpr double kCrepeDuration = 28.5;
+constexpr double kCrepeDuration = 38.5;
 constexpr double kAtRest = 1.0;      ///< s that all hands hold still
 constexpr double kPourBegins = 2.5;  ///< s that bowl and pan are behind their keys: the stirring takes longer
 
+// What comes later hangs where a hand takes it.
+const glm::dvec3 kSpatulaAt(0.02, 0.24, -0.2);
+const glm::dvec3 kPlateAt(-0.31, 0.0, 0.0);
+const glm::dvec3 kLadleAt(-0.415, 0.11, 0.0);
+constexpr double kLadleBelowRim = 0.006;  ///< of the syrup
+
 constexpr Bowl kMixingBowl{kMixRadius, -0.072, -0.15};
+constexpr Bowl kLadle{0.034, -0.044, -0.11};
 
 Solid falling_milk() {
   const double low = kMixRim - kMixBelowRim + kMilkAbove, high = low + kMilkDepth;
@@ -57,6 +64,13 @@ Solid whisk() {
               back = box({-half, low, -wide}, {half, high, -half});
   const Solid rod = lathe({{0.0, high}, {half, high}, {half, 0.2}, {0.0, 0.2}}, 24);
   return merged(merged(across, rod), merged(front, back));
+}
+
+/// A blade with a handle that stands on it.
+Solid spatula() {
+  const double half = 0.03, thick = 0.012, rod = 0.006;
+  return merged(box({-half, 0.0, -half}, {half, thick, half}),
+                lathe({{0.0, thick}, {rod, thick}, {rod, 0.2}, {0.0, 0.2}}, 24));
 }
 
 Solid plate() {
@@ -94,35 +108,72 @@ Pose pan_pose(double seconds) {
   // Tilted once round, to let the batter run; later up, over to the plate, and on its side.
   const double lean = glm::radians(follow({{11.5, 0.0}, {12.2, 2.5}, {14.6, 2.5}, {15.4, 0.0}}, time));
   const double way = turned({11.5, 0.6, 2.4, 1.5 * glm::pi<double>() / 2.5}, time);
-  const double over = glm::radians(follow({{21.0, 0.0}, {23.5, 75.0}}, time));
+  const double over = glm::radians(follow({{21.0, 0.0}, {23.5, 75.0}, {24.5, 75.0}, {26.0, 0.0}}, time));
   const glm::dquat round = glm::angleAxis(lean, glm::dvec3(std::cos(way), 0.0, std::sin(way)));
   const glm::dquat turn = glm::angleAxis(over, glm::dvec3(0.0, 0.0, 1.0)) * round;
   const double up =
       follow({{11.2, 0.0}, {11.8, 0.03}, {15.0, 0.03}, {15.8, 0.0}, {19.5, 0.0}, {21.0, 0.12}}, time);
-  const double to_plate = follow({{20.0, 0.0}, {21.5, -0.17}}, time);
+  const double to_plate = follow({{20.0, 0.0}, {21.5, -0.17}, {24.5, -0.17}, {26.5, 0.05}}, time);
   return {{to_plate, kCrepeHeld + up, 0.0}, turn};
 }
 
+Pose spatula_pose(double time) {
+  const double floor = kCrepeHeld + kWall;
+  const double along = follow({{17.5, 0.0}, {19.0, 1.0}, {21.4, 1.0}, {22.6, 0.0}}, time);
+  const double down = follow({{19.0, 0.06}, {20.0, -0.006}, {20.8, -0.006}, {21.4, 0.06}}, time);
+  const glm::dvec3 over_pan(0.02, floor + down, 0.0);
+  return {glm::mix(kSpatulaAt, over_pan, along), {1.0, 0.0, 0.0, 0.0}};
+}
+
+Pose ladle_pose(double time) {
+  const double angle = glm::radians(follow({{33.5, 0.0}, {35.0, 37.0}, {35.2, 37.0}, {36.2, 0.0}}, time));
+  const glm::dquat turn = glm::angleAxis(-angle, glm::dvec3(0.0, 0.0, 1.0));
+  const glm::dvec3 lip(kLadle.radius + 0.5 * kWall, kLadle.rim(), 0.0);
+  return {kLadleAt + lip - turn * lip, turn};
+}
+
 nlohmann::json crepe_steps() {
+  using nlohmann::json;
   const auto of = [](const char* kind, const char* region, double least) {
-    return nlohmann::json{{kind, region}, {"at_least", least}};
+    return json{{kind, region}, {"at_least", least}};
   };
-  const auto all = [](const nlohmann::json& a, const nlohmann::json& b) {
-    return nlohmann::json{{"all", nlohmann::json::array({a, b})}};
-  };
-  nlohmann::json mixed = of("mixing", "bowl_inside", 0.65);
+  const auto all = [](const json& a, const json& b) { return json{{"all", json::array({a, b})}}; };
+  json mixed = of("mixing", "bowl_inside", 0.75);
   mixed["fluid"] = "milk";
-  return {{{"say", "Stir the milk into the batter with the whisk."},
-           {"hint", "Go round the bowl, down to its floor."},
-           {"until", mixed}},
-          {{"say", "Tilt the bowl over its lip, and pour into the pan."},
-           {"hint", "Stop while some is left: the crêpe is to be thin."},
-           {"until", of("mass_kg", "pan_inside", 0.2)}},
-          {{"say", "Tilt the pan round until the batter covers it."},
-           {"until", all(of("spread_m2", "pan_inside", 0.025), of("evenness", "pan_inside", 0.5))}},
-          {{"say", "Let it set."}, {"until", of("set", "pan_inside", 0.9)}},
-          {{"say", "Tilt the pan over the plate until the crêpe slides onto it."},
-           {"until", of("mass_kg", "plate_top", 0.15)}}};
+  return {
+      {{"say", "Stir the milk into the batter with the whisk."},
+       {"hint", "Go round the bowl, down to its floor."},
+       {"until", mixed}},
+      {{"say", "Tilt the bowl over its lip, and pour into the pan."},
+       {"hint", "Stop while some is left: the crêpe is to be thin."},
+       {"until", of("mass_kg", "pan_inside", 0.2)}},
+      {{"say", "Tilt the pan round until the batter covers it."},
+       {"until", all(of("spread_m2", "pan_inside", 0.025), of("evenness", "pan_inside", 0.65))},
+       {"hold_s", 1.5},
+       {"then", json::array({{{"takes_away", "whisk_body"}},
+                             {{"appears", "spatula_body"}},
+                             {{"hand", "whisk"}, {"takes", "spatula"}}})}},
+      {{"say", "Let it set."},
+       {"until", of("set", "pan_inside", 0.9)},
+       {"then", json::array({{{"takes_away", "batter"}, {"in", "bowl_inside"}},
+                             {{"takes_away", "milk"}, {"in", "bowl_inside"}},
+                             {{"takes_away", "bowl_body"}}})}},
+      {{"say", "Press it flat on the pan with the spatula."},
+       {"hint", "With 2 to 10 N, for a moment."},
+       {"until", {{"force_n", "spatula"}, {"at_least", 2.0}, {"at_most", 10.0}}},
+       {"hold_s", 0.2}},
+      {{"say", "Tilt the pan over the plate until the crêpe slides onto it."},
+       {"until", of("mass_kg", "plate_top", 0.15)},
+       {"then", json::array({{{"takes_away", "spatula_body"}}, {{"appears", "butter"}}})}},
+      {{"say", "Let the butter melt on it."},
+       {"until", {{"set", "plate_top"}, {"fluid", "butter"}, {"at_most", 0.4}}},
+       {"then", json::array({{{"appears", "ladle_body"}},
+                             {{"appears", "syrup"}},
+                             {{"hand", "spatula"}, {"takes", "ladle"}}})}},
+      {{"say", "Pour 20 to 60 g of syrup on it, and set the ladle upright."},
+       {"until", all({{"mass_kg", "plate_top"}, {"fluid", "syrup"}, {"at_least", 0.02}, {"at_most", 0.06}},
+                     {{"tilt_deg", "ladle_body"}, {"at_most", 10.0}})},
+       {"hold_s", 0.5}}};
 }
 
 nlohmann::json crepe_batter(const char* name, double viscosity, const glm::dvec3& color) {
@@ -147,6 +198,39 @@ nlohmann::json crepe_batter(const char* name, double viscosity, const glm::dvec3
           {"tears_at", 0.6}};
 }
 
+nlohmann::json crepe_butter() {
+  return {{"slosh", "fluid"},
+          {"fluid", "butter"},
+          {"density_kg_m3", 910.0},
+          {"viscosity_pa_s", 0.3},
+          {"color", list({0.98, 0.86, 0.42})},
+          {"extinction_per_m", list({120.0, 140.0, 260.0})},
+          {"scattering", 0.9},
+          {"refraction", 1.46},
+          {"temperature_c", 15.0},
+          {"heat_capacity_j_kg_k", 2200.0},
+          {"conductivity_w_m_k", 10.0},
+          {"starts_set", true},
+          {"starts_away", true},
+          {"set_viscosity_pa_s", 20.0},
+          {"set_modulus_pa", 7000.0},
+          {"melts_above_c", 28.0},
+          {"melts_in_s", 1.5}};
+}
+
+nlohmann::json crepe_syrup() {
+  return {{"slosh", "fluid"},
+          {"fluid", "syrup"},
+          {"density_kg_m3", 1300.0},
+          {"viscosity_pa_s", 0.4},
+          {"color", list({0.45, 0.16, 0.02})},
+          {"extinction_per_m", list({20.0, 70.0, 250.0})},
+          {"refraction", 1.49},
+          {"conductivity_w_m_k", 0.4},
+          {"heat_capacity_j_kg_k", 2600.0},
+          {"starts_away", true}};
+}
+
 }  // namespace
 
 SceneWriter make_crepe() {
@@ -154,7 +238,7 @@ SceneWriter make_crepe() {
                       {"spacing_min_m", 0.006},
                       {"spacing_max_m", 0.009},
                       {"duration_s", kCrepeDuration},
-                      {"still_s", 27.5},
+                      {"still_s", 37.5},
                       {"settle_s", kSettle},
                       {"task", crepe_steps()},
                       {"domain_min_m", list({-0.55, -0.15, -0.4})},
@@ -184,23 +268,43 @@ SceneWriter make_crepe() {
   writer.add_node(
       "hob", writer.add_mesh("hob", lathe({{0.0, 0.0}, {0.1, 0.0}, {0.1, kHobTop}, {0.0, kHobTop}}, 48), hot),
       {}, {{"slosh", "body"}, {"viscosity_pa_s", 0.0}});
-  const int plate_node = writer.add_node(
-      "plate", writer.add_mesh("plate", plate(), white), {{-0.31, 0.0, 0.0}, {1.0, 0.0, 0.0, 0.0}},
-      {{"slosh", "body"}, {"viscosity_pa_s", 0.0}, {"temperature_c", 30.0}});
+  const int plate_node =
+      writer.add_node("plate", writer.add_mesh("plate", plate(), white), {kPlateAt, {1.0, 0.0, 0.0, 0.0}},
+                      {{"slosh", "body"}, {"viscosity_pa_s", 0.0}, {"temperature_c", 30.0}});
+  nlohmann::json spatula_body = free_body;
+  spatula_body["mass_kg"] = 0.06;
+  spatula_body["starts_away"] = true;
+  const int spatula_node = writer.add_node("spatula_body", writer.add_mesh("spatula", spatula(), steel),
+                                           spatula_pose(0.0), spatula_body);
+  nlohmann::json ladle_body = free_body;
+  ladle_body["mass_kg"] = 0.2;
+  ladle_body["starts_away"] = true;
+  const int ladle_node = writer.add_node("ladle_body", writer.add_mesh("ladle", kLadle.solid(), blue),
+                                         ladle_pose(0.0), ladle_body);
   const Pose in_bowl = mix_pose(0.0);
   writer.add_node("batter", writer.add_mesh("batter", kMixingBowl.filling(kMixBelowRim), look), in_bowl,
                   crepe_batter("batter", 2.5, {0.92, 0.76, 0.38}));
   writer.add_node("milk", writer.add_mesh("milk", falling_milk(), look), in_bowl,
                   crepe_batter("milk", 1.0, {0.95, 0.86, 0.62}));
+  writer.add_node("butter", writer.add_mesh("butter", box(glm::dvec3(-0.01), glm::dvec3(0.01)), look),
+                  {kPlateAt + glm::dvec3(-0.035, 0.09, 0.0), {1.0, 0.0, 0.0, 0.0}}, crepe_butter());
+  writer.add_node("syrup", writer.add_mesh("syrup", kLadle.filling(kLadleBelowRim), look), {}, crepe_syrup(),
+                  ladle_node);
   add_held(writer, "bowl", bowl_node, {{-0.12, kMixRim - 0.014, 0.0}, {1.0, 0.0, 0.0, 0.0}}, 0, mix_pose,
            kCrepeDuration);
   add_held(writer, "whisk", whisk_node, {{0.0, 0.17, 0.0}, {1.0, 0.0, 0.0, 0.0}}, 1, whisk_pose,
            kCrepeDuration);
   add_held(writer, "pan", pan_node, {{0.19, 0.024, 0.0}, {1.0, 0.0, 0.0, 0.0}}, 2, pan_pose, kCrepeDuration);
+  add_held(writer, "spatula", spatula_node, {{0.0, 0.17, 0.0}, {1.0, 0.0, 0.0, 0.0}}, 3, spatula_pose,
+           kCrepeDuration);
+  add_held(writer, "ladle", ladle_node, {{-0.09, kLadle.bar_height(), 0.0}, {1.0, 0.0, 0.0, 0.0}}, 4,
+           ladle_pose, kCrepeDuration);
   writer.add_node("bowl_inside", writer.add_mesh("bowl_inside", kMixingBowl.filling(0.0), look), {},
                   {{"slosh", "region"}}, bowl_node);
   writer.add_node("pan_inside", writer.add_mesh("pan_inside", pan_room(), look), {}, {{"slosh", "region"}},
                   pan_node);
+  writer.add_node("ladle_inside", writer.add_mesh("ladle_inside", kLadle.filling(0.0), look), {},
+                  {{"slosh", "region"}}, ladle_node);
   writer.add_node(
       "plate_top",
       writer.add_mesh("plate_top", lathe({{0.0, 0.0141}, {0.13, 0.0141}, {0.13, 0.12}, {0.0, 0.12}}, 48),
