@@ -256,18 +256,19 @@ struct Grip {
   std::vector<PoseKey> hand_motion;    ///< scripted handle pose (glTF animation of the hand); may be empty
 };
 
-enum class JointKind : std::uint8_t { kHinge, kSlider };
+enum class JointKind : std::uint8_t { kHinge, kSlider, kFixed };
 /// Their names in scene files, in the order of the values.
-inline constexpr std::array kJointKindNames{"hinge", "slider"};
+inline constexpr std::array kJointKindNames{"hinge", "slider", "fixed"};
 
 /// Joint::lower and upper where nothing stops it.
 inline constexpr double kNoStop = 1e9;
 /// In one scene: all are solved together.
 inline constexpr std::size_t kMaxJoints = 128;
 
-/// Two bodies, of which at least one is free and none a probe, that turn about one axis of each other (hinge)
-/// or slide along it (slider). They do not touch each other. The coordinate is an angle (rad, whole turns
-/// counted) or a way (m) of `body` against `other`, along the axis, from the poses of the scene.
+/// Two bodies, of which at least one is free and none a probe, that turn about one axis of each other
+/// (hinge), slide along it (slider) or are one (fixed). They do not touch each other while it holds. The
+/// coordinate is an angle (rad, whole turns counted) or a way (m) of `body` against `other`, along the axis,
+/// from the poses of the scene; of a fixed one how far its two frames are apart.
 struct Joint {
   std::string name;
   JointKind kind = JointKind::kHinge;
@@ -279,6 +280,19 @@ struct Joint {
   double damping = 0.0;      ///< N·m·s/rad or N·s/m, 0–10⁶
   double motor_speed = 0.0;  ///< rad/s or m/s that the motor goes for, ±1000
   double motor_limit = 0.0;  ///< N·m or N that it has at most, 0–10⁶; 0 = no motor
+  /// Above these its reaction, the mean over a step, makes it let go; 0 = it never does. 0–10⁶.
+  double breaks_force{};   ///< N
+  double breaks_torque{};  ///< N·m
+  /// A fixed one that is open closes where its two frames come within these of each other from farther off,
+  /// and holds them as they are then.
+  double joins_within{};  ///< m, 0–10; 0 = never
+  double joins_turn{};    ///< rad, 0–π
+  bool starts_apart{};    ///< it is open at first; needs `joins_within`
+  /// The frame on `other`, in its mesh frame (world axes where that is the world); none: where it lies in the
+  /// scene's poses.
+  std::optional<Pose> meets{};
+
+  bool changes() const { return breaks_force > 0.0 || breaks_torque > 0.0 || joins_within > 0.0; }
 };
 
 struct Camera {

@@ -13,7 +13,8 @@ namespace {
 
 constexpr std::uint32_t kMagic = 0x54535753;  // "SWST"
 constexpr std::uint32_t kVersion = 8;
-constexpr std::uint32_t kBeforeWaiting = 7;  // without SavedState::waiting, and read as well: none did
+constexpr std::uint32_t kBeforeWaiting = 7;  // without SavedState::waiting and joints that let go, and read
+                                             // as well: none waited, all held
 constexpr std::uint32_t kBeforeJoints = 6;   // without SavedState::joints, and read as well: there were none
 constexpr std::uint32_t kBeforeBroken = 5;   // without ParticleState::broken, and read as well: none was
 constexpr std::uint32_t kBeforeGone = 4;     // without RigidBody::gone, and read as well: no body was
@@ -77,6 +78,19 @@ void joint_state(S& s, J& joint, M& mean) {
   wrench(s, joint.impulse);
   s.real(mean.motor);
   wrench(s, mean.reaction);
+}
+
+template <class S, class J>
+void joint_hold(S& s, J& joint) {
+  auto hold = static_cast<std::uint8_t>(joint.hold);
+  s.raw(hold);
+  if constexpr (S::kReads) {
+    if (s.ok() && hold > static_cast<std::uint8_t>(JointHold::kOpen))
+      return s.fail("a joint in it neither holds nor is open");
+    joint.hold = static_cast<JointHold>(hold);
+  }
+  three(s, joint.rest.position);
+  rotation(s, joint.rest.orientation);
 }
 
 // Pairs of bodies that there are, in order: the solve looks them up.
@@ -265,7 +279,10 @@ void write_state(const StateFrame& frame, const RunConstants& constants, const S
     for (const double scale : *scales) s.real(scale);
   s.raw(static_cast<std::uint32_t>(state.impulses.size()));
   for (const KeptImpulse& k : state.impulses) kept_impulse(s, k);
-  for (std::size_t j = 0; j < state.joints.size(); ++j) joint_state(s, state.joints[j], state.joint_means[j]);
+  for (std::size_t j = 0; j < state.joints.size(); ++j) {
+    joint_state(s, state.joints[j], state.joint_means[j]);
+    joint_hold(s, state.joints[j]);
+  }
   s.column(std::span<const std::int64_t>(state.walls));
   s.raw(static_cast<std::uint32_t>(p.size()));
   columns(s, constants.plan, p);
@@ -335,8 +352,10 @@ Result<bool> read_state(std::span<const std::uint8_t> bytes, const StateFrame& f
   read_impulses(s, frame.bodies, state.impulses);
   state.joints.resize(frame.joints);
   state.joint_means.resize(frame.joints);
-  for (std::size_t j = 0; j < frame.joints && version > kBeforeJoints; ++j)
+  for (std::size_t j = 0; j < frame.joints && version > kBeforeJoints; ++j) {
     joint_state(s, state.joints[j], state.joint_means[j]);
+    if (version > kBeforeWaiting) joint_hold(s, state.joints[j]);
+  }
   state.walls = no_impulses(frame.bodies);
   s.column(std::span(state.walls));
   for (const std::int64_t word : state.walls) {

@@ -60,6 +60,7 @@ struct JointState {
   double speed = 0.0;     ///< rad/s or m/s
   double motor = 0.0;     ///< N·m or N along the axis by the motor on Joint::body, mean over the last step
   Wrench reaction;        ///< likewise, by all of the joint but motor and damper, about the joint, world axes
+  bool joined = true;     ///< it holds its two bodies
 };
 
 /// Body and grip states: what the 1 kHz loops need, small and often.

@@ -54,6 +54,15 @@ StateFrame state_frame(const Scene& scene, const Plan& plan, const ParticleStart
                               joint.pose.orientation.z, joint.lower, joint.upper, joint.damping,
                               joint.motor_speed, joint.motor_limit})
       real(part);
+    if (!joint.changes()) continue;
+    for (const double part : {joint.breaks_force, joint.breaks_torque, joint.joins_within, joint.joins_turn,
+                              joint.starts_apart ? 1.0 : 0.0})
+      real(part);
+    if (!joint.meets) continue;
+    vector(joint.meets->position);
+    for (const double part : {joint.meets->orientation.w, joint.meets->orientation.x,
+                              joint.meets->orientation.y, joint.meets->orientation.z})
+      real(part);
   }
   for (const Grip& grip : scene.grips) {
     print.add(static_cast<std::uint32_t>(grip.body));

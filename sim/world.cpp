@@ -40,6 +40,7 @@ void World::step(std::span<const HandleInput> handles) {
   for (int i = 0; i < w.plan().sub_steps; ++i) {
     w.run(w.sub_step(i));
   }
+  if (w.plan().has(PassId::kJoints)) w.bodies.change_joints(w.plan().time_step);
   w.times.total = whole.lap();
   ++w.tick;
 }

@@ -1,5 +1,5 @@
 // The field lists of what acts in a scene besides fluid, bodies and hands: heat, driven bodies, joints,
-// tasks.
+// tasks, and what comes apart or together.
 #pragma once
 
 #include <algorithm>
@@ -34,6 +34,13 @@ struct ActingScene {
   std::vector<SentGoal> goals;  ///< of one step after the other
 };
 
+/// How a joint lets go and closes.
+struct JointChanges {
+  double breaks_force = 0.0, breaks_torque = 0.0, joins_within = 0.0, joins_turn = 0.0;
+  bool starts_apart = false;
+  std::optional<Pose> meets;
+};
+
 /// What of a fluid volume only matters where it is filled while the world runs.
 struct VolumeComes {
   bool starts_away = false;
@@ -41,12 +48,14 @@ struct VolumeComes {
   int body = -1;
 };
 
-/// The same of a scene in which bodies or fluids come and go, or steps of a task do something.
+/// The same of a scene in which bodies or fluids come and go, joints let go or close, or steps of a task do
+/// something.
 struct ComingScene {
   ActingScene acting;
   std::vector<VolumeComes> volumes;             ///< one a fluid volume
   std::vector<std::uint8_t> starts_away;        ///< one a body
   std::vector<std::vector<TaskAct>> step_acts;  ///< one a step of the task
+  std::vector<JointChanges> joint_changes;      ///< one a joint
 };
 
 constexpr double kNoLimit = 1e300;  ///< stands for none: an infinity is no number here
@@ -175,6 +184,22 @@ void visit(V& v, ActingScene& m) {
   });
 }
 
+template <class V>
+void visit(V& v, JointChanges& m) {
+  v.real64("breaks_force", m.breaks_force, 0.0, 1e6);
+  v.real64("breaks_torque", m.breaks_torque, 0.0, 1e6);
+  v.real64("joins_within", m.joins_within, 0.0, 10.0);
+  v.real64("joins_turn", m.joins_turn, 0.0, 3.15);
+  v.flag("starts_apart", m.starts_apart);
+  v.rule("starts_apart", !m.starts_apart || m.joins_within > 0.0, "is of a joint that never closes");
+  bool given = m.meets.has_value();
+  Pose meets = m.meets.value_or(Pose{});
+  v.flag("meets_elsewhere", given);
+  v.vec3_exact("meets_position", meets.position, kMaxPosition);
+  v.rotation_exact("meets_orientation", meets.orientation);
+  if (given) m.meets = meets;
+}
+
 inline constexpr std::array kTaskActKindNames{"appears", "takes_away", "hand_takes"};
 
 /// Whether what comes, goes or is taken may.
@@ -222,6 +247,8 @@ void visit(V& v, ComingScene& m) {
                      one.rule("thing", can_act(scene, act), "is not in the scene, or stays there for good");
                    });
                  });
+  v.list_as_long("joint_changes", m.joint_changes, "joints", m.acting.joints.size(),
+                 [](auto& each, JointChanges& changes) { visit(each, changes); });
 }
 
 }  // namespace slosh::wire

@@ -14,11 +14,11 @@ namespace {
 using wire::Bytes;
 using wire::ByteView;
 
-// A package: its version, how the rest is coded, the rest. A scene in which something comes or goes has the
-// seventh version, else one that does more than flow and be held the sixth, else one with textures or light
-// of its own the fifth, else one whose fluids say how they look the fourth, else one that settles before its
-// run the third, else one with gauges or regions the second; any other the first, which programs from before
-// these can read. A peer needs the first, the fourth or the fifth.
+// A package: its version, how the rest is coded, the rest. A scene in which something comes or goes, or a
+// joint lets go or closes, has the seventh version, else one that does more than flow and be held the sixth,
+// else one with textures or light of its own the fifth, else one whose fluids say how they look the fourth,
+// else one that settles before its run the third, else one with gauges or regions the second; any other the
+// first, which programs from before these can read. A peer needs the first, the fourth or the fifth.
 constexpr std::uint8_t kVersion = 1;
 constexpr std::uint8_t kMeasured = 2;
 constexpr std::uint8_t kSettled = 3;
@@ -103,7 +103,10 @@ bool comes_or_goes(const Scene& scene) {
   return std::ranges::any_of(scene.bodies, &Body::starts_away) ||
          std::ranges::any_of(scene.fluid_volumes,
                              [](const FluidVolume& v) { return v.starts_away || v.fillings > 1; }) ||
-         std::ranges::any_of(scene.task, [](const TaskStep& step) { return !step.then.empty(); });
+         std::ranges::any_of(scene.task, [](const TaskStep& step) { return !step.then.empty(); }) ||
+         std::ranges::any_of(scene.joints, [](const Joint& joint) {
+           return joint.kind == JointKind::kFixed || joint.changes();
+         });
 }
 
 std::uint8_t version_of(const Scene& scene) {
@@ -189,6 +192,9 @@ void fill_acting(const Scene& scene, wire::ComingScene& coming) {
     coming.volumes.push_back({volume.starts_away, volume.fillings, volume.body});
   for (const Body& body : scene.bodies) coming.starts_away.push_back(body.starts_away);
   for (const TaskStep& step : scene.task) coming.step_acts.push_back(step.then);
+  for (const Joint& joint : scene.joints)
+    coming.joint_changes.push_back({joint.breaks_force, joint.breaks_torque, joint.joins_within,
+                                    joint.joins_turn, joint.starts_apart, joint.meets});
   for (const Fluid& fluid : scene.fluids) {
     Heat heat = fluid.heat;
     for (double* limit : {&heat.sets_above, &heat.sets_below, &heat.melts_above})
@@ -232,6 +238,16 @@ bool take_acting(wire::ComingScene& coming, bool comes, Scene& scene) {
   for (std::size_t i = 0; i < scene.bodies.size(); ++i)
     scene.bodies[i].starts_away = coming.starts_away[i] != 0;
   for (std::size_t i = 0; i < scene.task.size(); ++i) scene.task[i].then = std::move(coming.step_acts[i]);
+  for (std::size_t i = 0; i < scene.joints.size(); ++i) {
+    const wire::JointChanges& changes = coming.joint_changes[i];
+    Joint& joint = scene.joints[i];
+    joint.breaks_force = changes.breaks_force;
+    joint.breaks_torque = changes.breaks_torque;
+    joint.joins_within = changes.joins_within;
+    joint.joins_turn = changes.joins_turn;
+    joint.starts_apart = changes.starts_apart;
+    joint.meets = changes.meets;
+  }
   return true;
 }
 
@@ -308,7 +324,8 @@ std::vector<std::string> images_left_behind(const Scene& scene) {
 }
 
 Result<Bytes> pack_scene(const Scene& scene, double spacing, SceneParts parts) {
-  wire::ComingScene coming{{{{{{{scene, spacing}}}, scene.fluids}, {}, {}}, {}, {}, {}, {}, {}}, {}, {}, {}};
+  wire::ComingScene coming{
+      {{{{{{scene, spacing}}}, scene.fluids}, {}, {}}, {}, {}, {}, {}, {}}, {}, {}, {}, {}};
   wire::TexturedScene& whole = coming.acting.textured;
   Scene& sent = whole.looked.settled.measured.packed.scene;
   if (parts == SceneParts::kSeen) keep_seen(sent);

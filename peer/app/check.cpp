@@ -135,6 +135,18 @@ void print_json(const std::string& file, const Inspection& found, const std::opt
   std::printf("%s\n", out.dump(2, ' ', false, nlohmann::json::error_handler_t::replace).c_str());
 }
 
+/// How a joint lets go and closes.
+std::string changes_in_words(const Joint& joint) {
+  std::string words = joint.starts_apart ? ", apart at first" : "";
+  if (joint.breaks_force > 0.0) words += format(", breaks above %g N", joint.breaks_force);
+  if (joint.breaks_torque > 0.0)
+    words += format(joint.breaks_force > 0.0 ? " or %g N·m" : ", breaks above %g N·m", joint.breaks_torque);
+  if (joint.joins_within > 0.0)
+    words +=
+        format(", closes within %g mm and %g°", 1e3 * joint.joins_within, glm::degrees(joint.joins_turn));
+  return words;
+}
+
 void print_scene(const Scene& scene, const Counted& counted) {
   std::size_t free_bodies = 0;
   double mass = 0.0;
@@ -150,11 +162,11 @@ void print_scene(const Scene& scene, const Counted& counted) {
   if (driven > 0) std::printf("  driven      %td bodies, by their keys\n", driven);
   for (const Joint& joint : scene.joints) {
     std::printf(
-        "  joint       %s: %s of %s and %s%s\n", joint.name.c_str(),
+        "  joint       %s: %s of %s and %s%s%s\n", joint.name.c_str(),
         kJointKindNames[static_cast<std::size_t>(joint.kind)],
         scene.bodies[static_cast<std::size_t>(joint.body)].name.c_str(),
         joint.other < 0 ? "the world" : scene.bodies[static_cast<std::size_t>(joint.other)].name.c_str(),
-        joint.motor_limit > 0.0 ? ", with a motor" : "");
+        joint.motor_limit > 0.0 ? ", with a motor" : "", changes_in_words(joint).c_str());
   }
   std::printf("  grips       %zu\n", scene.grips.size());
   for (const Grip& grip : scene.grips) {

@@ -31,6 +31,13 @@ class MeasuredRow {
   std::string text_;
 };
 
+// What a joint is measured by: where it is free to move, and where it may let go or holds rigidly.
+constexpr char kJointMoves = 1, kJointPulls = 2;
+char joint_columns(const Joint& joint) {
+  const bool fixed = joint.kind == JointKind::kFixed;
+  return static_cast<char>((fixed ? 0 : kJointMoves) | (fixed || joint.changes() ? kJointPulls : 0));
+}
+
 void note(MeasuredPlace& place, double value, bool first) {
   if (first) place.start = place.least = place.most = value;
   place.end = value;
@@ -59,7 +66,8 @@ Measurer::Measurer(const Scene& scene, const SampledScene& sampled, double inter
   }
   for (const Gauge& gauge : scene.gauges) levels_.push_back({gauge.name, 0.0, 0.0, 0.0, 0.0});
   for (const Region& region : scene.regions) masses_.push_back({region.name, 0.0, 0.0, 0.0, 0.0});
-  motors_.resize(scene.joints.size());
+  for (std::vector<double>* values : {&motors_, &pulls_, &twists_}) values->resize(scene.joints.size());
+  for (const Joint& joint : scene.joints) joint_follows_.push_back(joint_columns(joint));
 }
 
 Result<std::unique_ptr<Measurer>> Measurer::create(const Scene& scene, const SampledScene& sampled,
@@ -77,9 +85,13 @@ Result<std::unique_ptr<Measurer>> Measurer::create(const Scene& scene, const Sam
   for (const Region& region : scene.regions) add_column(region.name + "_mass_kg");
   for (const Joint& joint : scene.joints) {
     const bool hinge = joint.kind == JointKind::kHinge;
-    add_column(joint.name + (hinge ? "_angle_rad" : "_way_m"));
-    add_column(joint.name + (hinge ? "_speed_rad_s" : "_speed_m_s"));
-    add_column(joint.name + (hinge ? "_motor_nm" : "_motor_n"));
+    if (joint_columns(joint) & kJointMoves) {
+      add_column(joint.name + (hinge ? "_angle_rad" : "_way_m"));
+      add_column(joint.name + (hinge ? "_speed_rad_s" : "_speed_m_s"));
+      add_column(joint.name + (hinge ? "_motor_nm" : "_motor_n"));
+    }
+    if (joint_columns(joint) & kJointPulls)
+      for (const char* what : {"_joined", "_force_n", "_torque_nm"}) add_column(joint.name + what);
   }
   Result<std::unique_ptr<LaterTable>> probes = LaterTable::create(folder / "probes.csv", header);
   if (!probes) return probes.error();
@@ -102,7 +114,12 @@ void Measurer::step(const World& world, double elapsed) {
   all_steps_ += 1;
   if (!bodies_.empty() || !motors_.empty()) {
     world.fill(now_);
-    for (std::size_t j = 0; j < motors_.size(); ++j) motors_[j] += now_.joints[j].motor;
+    for (std::size_t j = 0; j < motors_.size(); ++j) {
+      const JointState& joint = now_.joints[j];
+      motors_[j] += joint.motor;
+      pulls_[j] = std::max(pulls_[j], glm::length(joint.reaction.force));
+      twists_[j] = std::max(twists_[j], glm::length(joint.reaction.torque));
+    }
     for (Followed& body : bodies_) {
       const Wrench& fluid = now_.bodies[static_cast<std::size_t>(body.index)].fluid;
       body.since_row.force += fluid.force;
@@ -157,10 +174,17 @@ void Measurer::write_rows(const World& world, double elapsed) {
     note(masses_[i], m.masses[i], rows_ == 0);
   }
   for (std::size_t j = 0; j < motors_.size(); ++j) {
-    row.number(now_.joints[j].position);
-    row.number(now_.joints[j].speed);
-    row.number(share * motors_[j]);
-    motors_[j] = 0.0;
+    if (joint_follows_[j] & kJointMoves) {
+      row.number(now_.joints[j].position);
+      row.number(now_.joints[j].speed);
+      row.number(share * motors_[j]);
+    }
+    if (joint_follows_[j] & kJointPulls) {
+      row.count(now_.joints[j].joined);
+      row.number(pulls_[j]);
+      row.number(twists_[j]);
+    }
+    motors_[j] = pulls_[j] = twists_[j] = 0.0;
   }
   probe_table_->add(row.line());
   last_ = m.fluid;

@@ -66,7 +66,10 @@ class Measurer {
   std::vector<Followed> bodies_;
   std::vector<MeasuredPlace> levels_;
   std::vector<MeasuredPlace> masses_;
-  std::vector<double> motors_;  // a joint's, summed over steps since the row before
+  std::vector<double> motors_;       // a joint's, summed over steps since the row before
+  std::vector<double> pulls_;        // N, a joint's largest reaction of any of these steps
+  std::vector<double> twists_;       // N·m, likewise
+  std::vector<char> joint_follows_;  // bits of kJointMoves and kJointPulls: the columns that a joint has
   Diagnostics last_;
   BodySnapshot now_;
   std::unique_ptr<LaterTable> body_table_;  // null where no body is followed

@@ -19,14 +19,20 @@ constexpr double kMaxStopTurn = 36'000.0;  // degrees: a hundred turns
 constexpr double kMaxStopWay = 1000.0;     // m
 constexpr Range kMotorSpeed{-1000.0, 1000.0};
 constexpr Range kJointForce{0.0, 1e6};
+constexpr Range kBreaks{0.0, 1e6, true};
+constexpr Range kJoinsWithin{0.0, 10.0, true};
+constexpr Range kJoinsTurn{0.0, 180.0, true};
+constexpr double kUsualJoinsTurn = 10.0;  // degrees
 // By which the last of keys that repeat may be off the first, m and rad.
 constexpr double kMeetsWay = 1e-3;
 constexpr double kMeetsTurn = 1e-2;
 
-/// What a kind's fields are called.
+/// What a hinge's and a slider's fields are called.
 struct JointFields {
   const char *least, *most, *damping, *speed, *limit;
 };
+/// Only a fixed one's.
+constexpr const char* kFixedFields[] = {"starts_apart", "joins_m", "joins_deg", "meets"};
 constexpr JointFields kJointFields[] = {
     {"min_deg", "max_deg", "damping_nm_s_rad", "motor_rad_s", "motor_nm"},
     {"min_m", "max_m", "damping_n_s_m", "motor_m_s", "motor_n"},
@@ -79,18 +85,80 @@ void check_bodies(const Scene& scene, Extras& extras, const Joint& joint) {
                 "Give one of them motion = \"free\"");
 }
 
+void refuse_field(Extras& extras, const char* key, const char* of, const Joint& joint) {
+  if (!extras.has(key)) return;
+  extras.known(key);
+  extras.fail(key,
+              std::string("is a ") + of + "'s, and the joint is a " +
+                  kJointKindNames[static_cast<std::size_t>(joint.kind)],
+              std::string("Give kind = \"") + of + "\", or leave it out");
+}
+
+/// Above what it lets go, and when it closes.
+void read_joint_changes(Extras& extras, Joint& joint) {
+  for (const char* key : {"breaks_n", "breaks_nm"}) extras.known(key);
+  if (extras.has("breaks_n")) joint.breaks_force = extras.number("breaks_n", 0.0, kBreaks);
+  if (extras.has("breaks_nm")) joint.breaks_torque = extras.number("breaks_nm", 0.0, kBreaks);
+  if (joint.kind != JointKind::kFixed) return;
+  for (const char* key : kFixedFields) extras.known(key);
+  joint.starts_apart = extras.flag("starts_apart", false);
+  if (extras.has("joins_m")) {
+    joint.joins_within = extras.number("joins_m", 0.0, kJoinsWithin);
+    joint.joins_turn = extras.number("joins_deg", kUsualJoinsTurn, kJoinsTurn) * glm::pi<double>() / 180.0;
+    return;
+  }
+  const char* const mend = "Give joins_m: how near each other its two frames close it";
+  if (joint.starts_apart)
+    extras.fail("starts_apart", "is true, and joins_m is missing: it would never close", mend);
+  if (!extras.has("joins_deg")) return;
+  extras.fail("joins_deg", "asks for a joint that closes, and joins_m is missing", mend);
+}
+
+/// The frame on the other body, where another empty has it.
+void read_meets(const Reading& reading, Extras& extras, Joint& joint) {
+  const std::string name = extras.text("meets", "");
+  if (name.empty() || joint.kind != JointKind::kFixed) return;
+  if (!joint.starts_apart)
+    return extras.fail("meets", "is of a joint that starts apart, and this one holds from the start on",
+                       "Give starts_apart = true, or leave it out");
+  int found = -1, count = 0;
+  for (const int node : reading.document.nodes) {
+    if (reading.document.name(node) != name) continue;
+    found = node;
+    ++count;
+  }
+  if (count != 1)
+    return extras.fail(
+        "meets", "names '" + name + (count == 0 ? "', and there is none" : "', and several are called so"),
+        "Name an empty that is a child of the other body, where the two are to meet");
+  const int up = holder(reading, found);
+  const int body = up < 0 ? -1 : reading.body_of_node.at(up);
+  if (body != joint.other)
+    return extras.fail("meets", "names '" + name + "', which is not on the other body",
+                       joint.other < 0 ? "Take it off its body, or name that one in to"
+                                       : "Parent it to the body that to names");
+  Pose holds, world;
+  glm::dmat3 rest;
+  if (up >= 0 && read_pose(reading, up, holds, rest)) return;  // told with the body
+  if (const Problem problem = read_pose(reading, found, world, rest))
+    return extras.fail("meets", "names '" + name + "', which " + problem->what, problem->mend);
+  joint.meets = compose(inverse(holds), world);
+}
+
 void read_joint_fields(Extras& extras, Joint& joint) {
+  const char* const kind = kJointKindNames[static_cast<std::size_t>(joint.kind)];
+  for (std::size_t of = 0; of < std::size(kJointFields); ++of) {
+    if (kJointKindNames[of] == std::string_view(kind)) continue;
+    const JointFields& others = kJointFields[of];
+    for (const char* key : {others.least, others.most, others.damping, others.speed, others.limit})
+      refuse_field(extras, key, kJointKindNames[of], joint);
+  }
+  read_joint_changes(extras, joint);
+  if (joint.kind == JointKind::kFixed) return;
+  for (const char* key : kFixedFields)
+    refuse_field(extras, key, kJointKindNames[static_cast<std::size_t>(JointKind::kFixed)], joint);
   const bool hinge = joint.kind == JointKind::kHinge;
   const JointFields& fields = kJointFields[hinge ? 0 : 1];
-  const JointFields& others = kJointFields[hinge ? 1 : 0];
-  for (const char* key : {others.least, others.most, others.damping, others.speed, others.limit}) {
-    if (!extras.has(key)) continue;
-    extras.known(key);
-    extras.fail(key,
-                std::string("is a ") + kJointKindNames[hinge ? 1 : 0] + "'s, and the joint is a " +
-                    kJointKindNames[hinge ? 0 : 1],
-                std::string("Give kind = \"") + kJointKindNames[hinge ? 1 : 0] + "\", or leave it out");
-  }
   const double unit = hinge ? glm::pi<double>() / 180.0 : 1.0;
   const double widest = hinge ? kMaxStopTurn : kMaxStopWay;
   if (extras.has(fields.least)) joint.lower = unit * extras.number(fields.least, 0.0, Range{-widest, 0.0});
@@ -112,12 +180,15 @@ Problem read_joint(Reading& reading, int node) {
   Extras extras(reading.document.extras[node], reading.document.owner(node));
   extras.text("slosh", "");
   const Problem place = place_joint(reading, node, joint);
-  const std::string kind = extras.choice("kind", "hinge", {"hinge", "slider"});
-  joint.kind = kind == "slider" ? JointKind::kSlider : JointKind::kHinge;
-  if (!extras.has("kind")) extras.fail("kind", "is missing", "Give one of: hinge, slider");
+  const std::string kind =
+      extras.choice("kind", "hinge", {kJointKindNames[0], kJointKindNames[1], kJointKindNames[2]});
+  for (std::size_t k = 0; k < kJointKindNames.size(); ++k)
+    if (kind == kJointKindNames[k]) joint.kind = static_cast<JointKind>(k);
+  if (!extras.has("kind")) extras.fail("kind", "is missing", "Give one of: hinge, slider, fixed");
   read_other(scene, extras, joint);
   check_bodies(scene, extras, joint);
   read_joint_fields(extras, joint);
+  read_meets(reading, extras, joint);
   if (Problem problem = all_of(reading, place, extras)) return problem;
   if (scene.joints.size() >= kMaxJoints)
     return Error{reading.document.owner(node), "more than " + std::to_string(kMaxJoints) + " joints",

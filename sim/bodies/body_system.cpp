@@ -25,6 +25,7 @@ BodySystem::BodySystem(const Scene& scene, const SampledScene& sampled)
       memory_(sampled.spacing),
       grips_(scene.grips.size()) {
   for (const Body& body : scene.bodies) materials_.push_back({body.friction, body.restitution});
+  finder_.leave_out(joints_.connected());
 }
 
 std::uint32_t BodySystem::begin_step(std::span<const HandleInput> handles, double time_step) {

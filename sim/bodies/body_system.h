@@ -53,6 +53,10 @@ class BodySystem {
   void predict(const Plan& plan, const BodyForces& forces, const SubStep& step, std::span<ViscousBody> out);
   /// By how much they differ from those that it began with, one a body.
   std::span<const Twist> changes() const { return changes_; }
+  /// At a step's end: joints that were pulled too hard let go, open ones that come together close.
+  void change_joints(double time_step) {
+    if (joints_.change(bodies_, time_step)) finder_.leave_out(joints_.connected());
+  }
   /// Moves the bodies on by the sub-step that was solved.
   void move(const SubStep& step);
   /// Takes what left for good (BodyRoom) and is held by nobody out of the motion: it stands still from then
@@ -78,6 +82,7 @@ class BodySystem {
   const JointSystem& joints() const { return joints_; }
   void restore_joints(std::vector<KeptJoint> kept, std::vector<JointState> means) {
     joints_.restore(std::move(kept), std::move(means));
+    finder_.leave_out(joints_.connected());
   }
   void restore(std::vector<RigidBody> bodies, std::vector<GripState> grips, std::vector<HandleInput> inputs,
                Hands::Stiffness stiffness, std::vector<KeptImpulse> impulses);

@@ -88,7 +88,6 @@ void add_corners(const TriangleMesh& mesh, std::vector<glm::vec3>& points, std::
 }  // namespace
 
 ContactFinder::ContactFinder(const Scene& scene, const SampledScene& sampled) : spacing_(sampled.spacing) {
-  for (const Joint& joint : scene.joints) joined_.emplace(std::minmax(joint.body, joint.other));
   shapes_.resize(scene.bodies.size());
   for (std::size_t i = 0; i < shapes_.size(); ++i) {
     Shape& shape = shapes_[i];

@@ -16,13 +16,15 @@ namespace slosh {
 
 class JointSystem;
 
-/// Finds contacts between bodies of which at least one is free, none gone, and that no joint connects. A pair
+/// Finds contacts between bodies of which at least one is free, none gone, and that no joint holds. A pair
 /// gets at most kMaxContactsPerPair, spread over the touching patch. Deterministic.
 class ContactFinder {
  public:
   static constexpr int kMaxContactsPerPair = 16;
 
   ContactFinder(const Scene& scene, const SampledScene& sampled);
+  /// From now on these pairs are not tried, the lower index first.
+  void leave_out(std::set<std::pair<int, int>> joined) { joined_ = std::move(joined); }
 
   /// Points closer than `margin` (m) to the other body's surface, and those that come as close within `dt` s
   /// at the speeds that `solves` has found so far, however fast. Of a patch's points those that `memory` has

@@ -22,9 +22,9 @@ struct JointRow {
   int axis = 0;
 };
 
-/// What each kind holds, and what it leaves free.
-inline constexpr int kRowsPerJoint = 5;
-std::span<const JointRow, kRowsPerJoint> held_rows(JointKind kind);
+/// What each kind holds, and what a hinge or a slider leaves free.
+inline constexpr std::size_t kMaxRowsPerJoint = 6;
+std::span<const JointRow> held_rows(JointKind kind);
 inline JointRow free_row(JointKind kind) {
   return {kind == JointKind::kHinge, 1};
 }
@@ -36,9 +36,12 @@ struct JointFrames {
   glm::dvec3 axis(int i) const { return glm::mat3_cast(second.orientation)[i]; }
   /// Where both bodies get an impulse: one point, so that it exerts no net torque.
   const glm::dvec3& point() const { return first.position; }
-  /// m or rad by which the first is off the second, by the rows that the kind holds.
-  std::array<double, kRowsPerJoint> off(JointKind kind) const;
-  /// m, or rad from −π to π, of the row that it leaves free.
+  /// The first in the second's axes.
+  Pose relative() const { return compose(inverse(second), first); }
+  /// m or rad by which the first is off the second, by the rows that the kind holds. `rest`: where a fixed
+  /// one holds the first, in the second's axes.
+  std::array<double, kMaxRowsPerJoint> off(JointKind kind, const Pose& rest) const;
+  /// m, or rad from −π to π, of the row that it leaves free; of a fixed one m between the two.
   double coordinate(JointKind kind) const;
 };
 

@@ -54,8 +54,8 @@ void JointSystem::make_rows(const std::vector<RigidBody>& bodies, double dt,
     const auto gone = [&](int body) { return body >= 0 && bodies[index(body)].gone; };
     const JointFrames f = frames(joint, bodies);
     kept_[j].position = unwrapped(j, f);
-    if ((!moves(a) && !moves(b)) || gone(a) || gone(b)) continue;
-    const std::array<double, kRowsPerJoint> off = f.off(joint.kind);
+    if ((!moves(a) && !moves(b)) || gone(a) || gone(b) || !holds(kept_[j].hold)) continue;
+    const auto off = f.off(joint.kind, kept_[j].rest);
     const auto add = [&](JointRow row, double by, bool damper) {
       for (const int body : {a, b})
         if (moves(body)) rows_of_body_[index(body)].push_back(static_cast<int>(rows_.size()));
@@ -64,7 +64,7 @@ void JointSystem::make_rows(const std::vector<RigidBody>& bodies, double dt,
                        0.0, damper});
     };
     const auto held = held_rows(joint.kind);
-    for (int r = 0; r < kRowsPerJoint; ++r) add(held[r], off[r], false);
+    for (std::size_t r = 0; r < held.size(); ++r) add(held[r], off[r], false);
     if (joint.damping > kMinDamping) add(free_row(joint.kind), 0.0, true);
   }
   first_row_.push_back(rows_.size());

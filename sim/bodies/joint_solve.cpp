@@ -53,8 +53,8 @@ double JointSystem::find_wrong(const std::vector<RigidBody>& bodies, const Drive
     if (first_row_[j] == first_row_[j + 1]) continue;
     end_of(joints_[j].first.body);
     end_of(joints_[j].second.body);
-    const auto off = frames(joints_[j], ends_).off(joints_[j].kind);
-    for (std::size_t r = 0; r < kRowsPerJoint; ++r) {
+    const auto off = frames(joints_[j], ends_).off(joints_[j].kind, kept_[j].rest);
+    for (std::size_t r = 0; r < held_rows(joints_[j].kind).size(); ++r) {
       const std::size_t row = first_row_[j] + r;
       const double beyond = off[r] - left * rows_[row].off;
       wrong_[row] = beyond / dt;

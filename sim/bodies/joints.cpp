@@ -40,19 +40,28 @@ JointSystem::JointSystem(const Scene& scene, const std::vector<RigidBody>& bodie
   if (scene.joints.empty()) return;
   groups_.resize(bodies.size());
   joints_of_body_.resize(bodies.size());
-  std::iota(groups_.begin(), groups_.end(), 0);
-  std::vector<char> joined(bodies.size(), 0);
   for (const Joint& source : scene.joints) {
     const Pose frame = compose(bodies[static_cast<std::size_t>(source.body)].mesh_pose(), source.pose);
+    const Pose other =
+        !source.meets ? frame
+        : source.other < 0
+            ? *source.meets
+            : compose(bodies[static_cast<std::size_t>(source.other)].mesh_pose(), *source.meets);
     Linked joint{source.kind,
                  side_of(source.body, frame, bodies),
-                 side_of(source.other, frame, bodies),
+                 side_of(source.other, other, bodies),
                  source.lower,
                  source.upper,
                  source.damping,
                  source.motor_speed,
                  source.motor_limit,
-                 {}};
+                 source.breaks_force,
+                 source.breaks_torque,
+                 source.joins_within,
+                 source.joins_turn,
+                 is_free(source.body, bodies),
+                 is_free(source.other, bodies)};
+    if (source.starts_apart) kept_[joints_.size()].hold = JointHold::kParted;
     const auto shared = [&](const Linked& other) {
       for (const int mine : {joint.first.body, joint.second.body}) {
         if (is_free(mine, bodies) && (mine == other.first.body || mine == other.second.body)) return true;
@@ -63,19 +72,87 @@ JointSystem::JointSystem(const Scene& scene, const std::vector<RigidBody>& bodie
       if (shared(joints_[i])) joint.neighbours.push_back(static_cast<int>(i));
     joint.neighbours.push_back(static_cast<int>(joints_.size()));
     for (const int b : {source.body, source.other}) {
-      if (!is_free(b, bodies)) continue;
-      joined[static_cast<std::size_t>(b)] = 1;
-      joints_of_body_[static_cast<std::size_t>(b)].push_back(static_cast<int>(joints_.size()));
+      if (is_free(b, bodies))
+        joints_of_body_[static_cast<std::size_t>(b)].push_back(static_cast<int>(joints_.size()));
     }
     joints_.push_back(std::move(joint));
-    if (!is_free(source.body, bodies) || !is_free(source.other, bodies)) continue;
-    const int from = groups_[static_cast<std::size_t>(source.body)];
-    const int to = groups_[static_cast<std::size_t>(source.other)];
+  }
+  rows_of_body_.resize(bodies.size());
+  regroup();
+}
+
+// By the joints that hold.
+void JointSystem::regroup() {
+  if (joints_.empty()) return;
+  std::iota(groups_.begin(), groups_.end(), 0);
+  std::vector<char> joined(groups_.size(), 0);
+  connected_.clear();
+  for (std::size_t j = 0; j < joints_.size(); ++j) {
+    if (!holds(kept_[j].hold)) continue;
+    const Linked& joint = joints_[j];
+    const int a = joint.first.body, b = joint.second.body;
+    connected_.emplace(std::minmax(a, b));
+    if (joint.first_free) joined[static_cast<std::size_t>(a)] = 1;
+    if (joint.second_free) joined[static_cast<std::size_t>(b)] = 1;
+    if (!joint.first_free || !joint.second_free) continue;
+    const int from = groups_[static_cast<std::size_t>(a)];
+    const int to = groups_[static_cast<std::size_t>(b)];
     std::replace(groups_.begin(), groups_.end(), from, to);
   }
-  for (std::size_t b = 0; b < bodies.size(); ++b)
+  for (std::size_t b = 0; b < groups_.size(); ++b)
     if (!joined[b]) groups_[b] = -1;
-  rows_of_body_.resize(bodies.size());
+}
+
+bool JointSystem::change(const std::vector<RigidBody>& bodies, double time_step) {
+  bool changed = false;
+  for (std::size_t j = 0; j < joints_.size(); ++j) {
+    const Linked& joint = joints_[j];
+    KeptJoint& kept = kept_[j];
+    const Wrench& reaction = means_[j].reaction;
+    const auto above = [](double limit, const glm::dvec3& is) {
+      return limit > 0.0 && glm::length(is) > limit;
+    };
+    switch (kept.hold) {
+      case JointHold::kJustJoined:
+        kept.hold = JointHold::kJoined;
+        break;
+      case JointHold::kJoined:
+        if (!above(joint.breaks_force, reaction.force) && !above(joint.breaks_torque, reaction.torque)) break;
+        kept.hold = JointHold::kParted;
+        kept.motor = kept.stop = 0.0;
+        kept.impulse = Wrench{};
+        changed = true;
+        break;
+      case JointHold::kParted:
+        if (joint.joins_within > 0.0 && !near(joint, bodies, 0.0)) kept.hold = JointHold::kOpen;
+        break;
+      case JointHold::kOpen:
+        if (!near(joint, bodies, time_step)) break;
+        kept.hold = JointHold::kJustJoined;
+        kept.rest = frames(joint, bodies).relative();
+        changed = true;
+        break;
+    }
+  }
+  if (changed) regroup();
+  return changed;
+}
+
+// Whether the two frames are as near each other as the joint closes from, or will be within `ahead` s: what
+// is fast would pass between two steps.
+bool JointSystem::near(const Linked& joint, const std::vector<RigidBody>& bodies, double ahead) const {
+  const auto gone = [&](int body) { return body >= 0 && bodies[static_cast<std::size_t>(body)].gone; };
+  const int a = joint.first.body, b = joint.second.body;
+  if (gone(a) || gone(b)) return false;
+  const JointFrames f = frames(joint, bodies);
+  const glm::dvec3 apart = f.first.position - f.second.position;
+  const glm::dvec3 speed =
+      velocity_of(a, bodies, f.first.position) - velocity_of(b, bodies, f.second.position);
+  const double square = glm::dot(speed, speed);
+  const double nearest = square > 0.0 ? std::clamp(-glm::dot(apart, speed) / square, 0.0, ahead) : 0.0;
+  const glm::dvec3 turned = rotation_between(f.second.orientation, f.first.orientation);
+  return glm::length(apart + nearest * speed) <= joint.joins_within &&
+         glm::length(turned) <= joint.joins_turn;
 }
 
 void JointSystem::begin_step() {
@@ -114,7 +191,7 @@ JointFrames JointSystem::frames(const Linked& joint, const std::vector<RigidBody
 double JointSystem::unwrapped(std::size_t joint, const JointFrames& frames) const {
   const JointKind kind = joints_[joint].kind;
   const double now = frames.coordinate(kind), before = kept_[joint].position;
-  if (kind == JointKind::kSlider) return now;
+  if (kind != JointKind::kHinge) return now;
   return before + std::remainder(now - before, 2.0 * std::numbers::pi);
 }
 
@@ -171,7 +248,15 @@ void JointSystem::fill(const std::vector<RigidBody>& bodies, std::vector<JointSt
                                   ? turning_of(a, bodies) - turning_of(b, bodies)
                                   : velocity_of(a, bodies, f.point()) - velocity_of(b, bodies, f.point());
     out[j] = means_[j];
+    out[j].joined = holds(kept_[j].hold);
     out[j].position = unwrapped(j, f);
+    if (joint.kind == JointKind::kFixed) {
+      const glm::dvec3 apart = f.first.position - f.second.position;
+      const glm::dvec3 going =
+          velocity_of(a, bodies, f.first.position) - velocity_of(b, bodies, f.second.position);
+      out[j].speed = out[j].position > 0.0 ? glm::dot(going, apart) / out[j].position : 0.0;
+      continue;
+    }
     out[j].speed = glm::dot(f.axis(free_row(joint.kind).axis), moving);
   }
 }
@@ -179,6 +264,7 @@ void JointSystem::fill(const std::vector<RigidBody>& bodies, std::vector<JointSt
 void JointSystem::restore(std::vector<KeptJoint> kept, std::vector<JointState> means) {
   kept_ = std::move(kept);
   means_ = std::move(means);
+  regroup();
 }
 
 }  // namespace slosh

@@ -1,8 +1,9 @@
-// Hinges and sliders between bodies: all that they hold is solved at once, by one factor over all joints, so
-// that neither a chain's length nor a ratio of masses matters. Motors and stops are rows of the contacts'
-// solve, which act with every joint kept.
+// Hinges, sliders and fixed joints between bodies: all that they hold is solved at once, by one factor over
+// all joints, so that neither a chain's length nor a ratio of masses matters. Motors and stops are rows of
+// the contacts' solve, which act with every joint kept. Between two steps joints let go and close.
 #pragma once
 
+#include <set>
 #include <span>
 #include <utility>
 #include <vector>
@@ -15,12 +16,22 @@
 
 namespace slosh {
 
+/// Whether a joint holds. In the step in which it closes it does not break: that step's reaction is the blow
+/// of closing, which is the larger the shorter the step. What let go is not open before its frames were
+/// farther apart than it closes from: else it would close again at once.
+enum class JointHold : std::uint8_t { kJoined, kJustJoined, kParted, kOpen };
+constexpr bool holds(JointHold hold) {
+  return hold == JointHold::kJoined || hold == JointHold::kJustJoined;
+}
+
 /// What a joint keeps from one sub-step to the next.
 struct KeptJoint {
   double position = 0.0;  ///< rad or m when the last sub-step began, whole turns counted
   double motor = 0.0;     ///< N·m·s or N·s on the first body along the axis
   double stop = 0.0;      ///< likewise: above 0 by the lower stop, below by the upper
   Wrench impulse;         ///< N·s and N·m·s of all its rows on the first body, about the joint, world axes
+  JointHold hold = JointHold::kJoined;
+  Pose rest{};  ///< where a fixed one holds its first frame, in the second's axes
 };
 
 /// What an impulse of one row does to the bodies beyond its own two, with all joints kept.
@@ -71,6 +82,13 @@ class JointSystem {
   void finish(const std::vector<RigidBody>& bodies, const DrivenBodies& driven, double dt, double share,
               std::vector<BodySolve>& solves);
 
+  /// At a step's end, of `time_step` s: joints whose reaction was above what they bear let go, and open ones
+  /// whose frames come near each other close. True where any did. Neither gives an impulse: what a closing
+  /// joint takes away is the next sub-step's solve's to find.
+  bool change(const std::vector<RigidBody>& bodies, double time_step);
+  /// Pairs of bodies that joints hold together, the lower index first; with the world's −1.
+  const std::set<std::pair<int, int>>& connected() const { return connected_; }
+
   /// Adds the last sub-step's impulses to the momenta.
   void predict(const std::vector<RigidBody>& bodies, std::span<ViscousBody> out) const;
 
@@ -85,7 +103,9 @@ class JointSystem {
     JointKind kind = JointKind::kHinge;
     JointSide first, second;
     double lower = 0.0, upper = 0.0, damping = 0.0, motor_speed = 0.0, motor_limit = 0.0;
-    std::vector<int> neighbours;  // joints before it, and itself, that share a free body
+    double breaks_force = 0.0, breaks_torque = 0.0, joins_within = 0.0, joins_turn = 0.0;
+    bool first_free = false, second_free = false;
+    std::vector<int> neighbours{};  // joints before it, and itself, that share a free body
   };
   // A row of one joint in this sub-step.
   struct Held {
@@ -98,6 +118,8 @@ class JointSystem {
     bool damper = false;
   };
 
+  void regroup();
+  bool near(const Linked& joint, const std::vector<RigidBody>& bodies, double ahead) const;
   JointFrames frames(const Linked& joint, const std::vector<RigidBody>& bodies) const;
   double unwrapped(std::size_t joint, const JointFrames& frames) const;
   rows::Row row_on(int body, const std::vector<RigidBody>& bodies, const std::vector<BodySolve>& solves,
@@ -124,6 +146,7 @@ class JointSystem {
 
   std::vector<Linked> joints_;
   std::vector<int> groups_;
+  std::set<std::pair<int, int>> connected_;
   std::vector<std::vector<int>> joints_of_body_;  // free ones'
   std::vector<KeptJoint> kept_;
   std::vector<JointState> means_;

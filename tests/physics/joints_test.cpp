@@ -50,6 +50,40 @@ TEST(Pendulum, has_the_period_of_its_swing) {
   }
 }
 
+// A bob fixed to the end of a rod: with the rod one body, whose moment is the sum by Steiner.
+TEST(Pendulum, of_two_that_are_fixed_to_each_other_has_the_period_of_one) {
+  constexpr double kRodMass = 0.5, kRodLength = 0.3, kBob = 2.0, kBobInertia = 0.004, kDown = 0.4,
+                   kSwing = 1.0;
+  constexpr double kRodInertia = kRodMass * kRodLength * kRodLength / 12.0;
+  Linkage link;
+  link.time_step = 0.004;
+  const glm::dquat turn = glm::angleAxis(-kSwing, kHingeAxis);
+  const int rod =
+      link.add(kRodMass, glm::dvec3(kRodInertia), {turn * glm::dvec3(0, -0.5 * kRodLength, 0), turn});
+  const int bob = link.add(kBob, glm::dvec3(kBobInertia), {turn * glm::dvec3(0, -kDown, 0), turn});
+  link.join(JointKind::kHinge, rod, -1, frame_along(kHingeAxis, {0, 0, 0}));
+  link.join(JointKind::kFixed, bob, rod, {turn * glm::dvec3(0, -kRodLength, 0), turn});
+  World world = link.world();
+  double first = 0.0, last = 0.0, before = -kSwing;
+  constexpr int kSwings = 10;
+  for (int passed = 0; passed <= kSwings;) {
+    world.step({});
+    const double now = state_of(world).joints[0].position - kSwing;
+    if (before < 0.0 && now >= 0.0) {
+      last = world.time() - world.plan().time_step * now / (now - before);
+      if (passed++ == 0) first = last;
+    }
+    before = now;
+  }
+  const double moment =
+      kRodInertia + kRodMass * 0.25 * kRodLength * kRodLength + kBobInertia + kBob * kDown * kDown;
+  const double pull = kGravity * (kRodMass * 0.5 * kRodLength + kBob * kDown);
+  const double expected = 4.0 * std::sqrt(moment / pull) * std::comp_ellint_1(std::sin(0.5 * kSwing));
+  EXPECT_LT(
+      std::abs(report("rod and bob fixed to each other, period", (last - first) / kSwings, expected, "s")),
+      1e-3);
+}
+
 // Rods of 0.3 m that hang on each other by hinges about z and start out straight at an angle.
 Linkage chain_of(int count, double start, double last_mass = 0.1) {
   constexpr double kRod = 0.3, kMass = 0.1;

@@ -70,7 +70,7 @@ TEST(JointNodes, WithoutToAreOfTheWorld) {
 }
 
 TEST(JointNodes, SayWhatIsWrong) {
-  expect_linkage_error("pivot", {{"kind", "ball"}}, {"'pivot'", "kind", "ball", "hinge, slider"});
+  expect_linkage_error("pivot", {{"kind", "ball"}}, {"'pivot'", "kind", "ball", "hinge, slider, fixed"});
   expect_linkage_error("pivot", {{"to", "bas"}}, {"'pivot'", "to", "'bas'", "Did you mean base"});
   expect_linkage_error("pivot", {{"to", "arm"}}, {"'pivot'", "to", "hangs on"});
   expect_linkage_error("pivot", {{"min_deg", 10}}, {"'pivot'", "min_deg", "10"});
@@ -85,6 +85,63 @@ TEST(JointNodes, SayWhatIsWrong) {
                        arm.erase("children");
                      }),
                      {"'pivot'", "not the child of a body"});
+}
+
+TEST(JointNodes, SayWhenTheyLetGo) {
+  const auto scene = load_linkage(
+      [](json& j) { node_named(j, "pivot")["extras"].update({{"breaks_n", 12.5}, {"breaks_nm", 0.5}}); });
+  ASSERT_TRUE(scene) << scene.error().text();
+  EXPECT_EQ(scene.value().joints[0].breaks_force, 12.5);
+  EXPECT_EQ(scene.value().joints[0].breaks_torque, 0.5);
+  EXPECT_FALSE(scene.value().joints[0].starts_apart);
+}
+
+/// An empty on the base, which a joint that starts apart may name.
+void add_mark(json& j, const char* holder = "base") {
+  j["nodes"].push_back({{"name", "mark"}, {"translation", {0.01, 0.02, 0.03}}});
+  node_named(j, holder)["children"].push_back(j["nodes"].size() - 1);
+}
+const json kCatch{{"slosh", "joint"},     {"kind", "fixed"},  {"to", "base"},
+                  {"starts_apart", true}, {"joins_m", 0.002}, {"meets", "mark"}};
+
+TEST(JointNodes, MeetAnEmptyOfTheOtherBody) {
+  const auto scene = load_linkage([](json& j) {
+    add_mark(j);
+    node_named(j, "pivot")["extras"] = kCatch;
+  });
+  ASSERT_TRUE(scene) << scene.error().text();
+  const Joint& joint = scene.value().joints[0];
+  EXPECT_EQ(joint.kind, JointKind::kFixed);
+  EXPECT_TRUE(joint.starts_apart);
+  EXPECT_EQ(joint.joins_within, 0.002);
+  EXPECT_NEAR(joint.joins_turn, std::numbers::pi / 18.0, 1e-12);
+  ASSERT_TRUE(joint.meets);
+  EXPECT_NEAR(glm::distance(joint.meets->position, glm::dvec3(0.01, 0.02, 0.03)), 0.0, 1e-6);
+}
+
+TEST(JointNodes, SayWhatIsWrongWithWhatChanges) {
+  expect_linkage_error("pivot", {{"breaks_n", 0}}, {"'pivot'", "breaks_n", "0"});
+  expect_linkage_error("pivot", {{"joins_m", 0.1}}, {"'pivot'", "joins_m", "fixed's", "hinge"});
+  expect_linkage_error("pivot", {{"kind", "fixed"}, {"max_deg", 5}},
+                       {"'pivot'", "max_deg", "hinge's", "fixed"});
+  expect_linkage_error("pivot", {{"kind", "fixed"}, {"motor_n", 5}}, {"'pivot'", "motor_n", "slider's"});
+  expect_linkage_error("pivot", {{"kind", "fixed"}, {"starts_apart", true}},
+                       {"'pivot'", "starts_apart", "never close", "Give joins_m"});
+  expect_linkage_error("pivot", {{"kind", "fixed"}, {"joins_deg", 5}},
+                       {"'pivot'", "joins_deg", "Give joins_m"});
+  const auto expect_catch_error = [](const json& fields, const char* holder, auto words) {
+    test::expect_error(load_linkage([&](json& j) {
+                         add_mark(j, holder);
+                         node_named(j, "pivot")["extras"] = kCatch;
+                         node_named(j, "pivot")["extras"].update(fields);
+                       }),
+                       words);
+  };
+  using Words = std::initializer_list<const char*>;
+  expect_catch_error({{"meets", "mork"}}, "base", Words{"'pivot'", "meets", "'mork'", "there is none"});
+  expect_catch_error(json::object(), "plate", Words{"'pivot'", "meets", "not on the other body", "Parent it"});
+  expect_catch_error({{"to", nullptr}}, "base", Words{"'pivot'", "meets", "Take it off its body"});
+  expect_catch_error({{"starts_apart", false}}, "base", Words{"'pivot'", "meets", "starts_apart = true"});
 }
 
 TEST(DrivenBodies, TakeTheKeysOfTheirNode) {

@@ -50,6 +50,30 @@ TEST(ActingScene, HeatAndTaskTravelWithAWholeScene) {
             std::string::npos);
 }
 
+// Joints that let go or close need the version that has this; any other travels as before.
+TEST(ActingScene, JointsThatChangeTravel) {
+  Scene scene = test::small_scene();
+  scene.joints.push_back({"lid", JointKind::kHinge, 0, 1, {{0.1, 0.0, 0.0}, {1.0, 0.0, 0.0, 0.0}}});
+  EXPECT_EQ(packed(scene)[0], 6);
+  scene.joints[0].breaks_torque = 2.5;
+  Joint catches{"catch", JointKind::kFixed, 0, 1};
+  catches.starts_apart = true;
+  catches.joins_within = 0.002;
+  catches.joins_turn = 0.25;
+  catches.meets = Pose{{0.1, 0.2, 0.3}, {0.6, 0.8, 0.0, 0.0}};
+  scene.joints.push_back(catches);
+  const Bytes all = packed(scene);
+  EXPECT_EQ(all[0], 7);
+  const Result<UnpackedScene> back = unpack_scene(all);
+  ASSERT_TRUE(static_cast<bool>(back)) << back.error().text();
+  test::expect_same_scene(back.value().scene, scene);
+  EXPECT_EQ(packed(scene, SceneParts::kSeen)[0], 1);
+  scene.joints[1].joins_within = 0.0;
+  EXPECT_NE(pack_scene(scene, 0.01, SceneParts::kAll).error().text().find("never closes"), std::string::npos);
+  scene.joints.assign(1, {"glue", JointKind::kFixed, 0, 1});
+  EXPECT_EQ(packed(scene)[0], 7);
+}
+
 // A goal that says it has more parts than come, and one with a part too many.
 TEST(ActingScene, GoalsThatDoNotFitTheirStepsAreRefused) {
   wire::ActingScene acting{

@@ -117,6 +117,16 @@ void expect_same_scene(const Scene& a, const Scene& b) {
     SAME(joints[i].damping);
     SAME(joints[i].motor_speed);
     SAME(joints[i].motor_limit);
+    SAME(joints[i].breaks_force);
+    SAME(joints[i].breaks_torque);
+    SAME(joints[i].joins_within);
+    SAME(joints[i].joins_turn);
+    SAME(joints[i].starts_apart);
+    ASSERT_EQ(a.joints[i].meets.has_value(), b.joints[i].meets.has_value());
+    if (a.joints[i].meets) {
+      SAME(joints[i].meets->position);
+      SAME(joints[i].meets->orientation);
+    }
   }
   ASSERT_EQ(a.gauges.size(), b.gauges.size());
   for (std::size_t i = 0; i < a.gauges.size(); ++i) {

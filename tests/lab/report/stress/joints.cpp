@@ -110,6 +110,75 @@ Stress stiff_door(const Setting& setting, Cost& cost) {
   return found;
 }
 
+// Ten links fixed to each other that stand out from a wall, the last of a thousand times their mass.
+Scene beam(double heavier, double breaks) {
+  SceneBuilder b;
+  int above = -1;
+  for (int i = 0; i < 10; ++i) {
+    const int link =
+        b.add_free("link", make::box({-0.4 * kLink, -0.005, -0.005}, {0.4 * kLink, 0.005, 0.005}),
+                   i == 9 ? 0.02 * heavier : 0.02, {{(i + 0.5) * kLink, 0.0, 0.0}, {1, 0, 0, 0}});
+    Joint joint;
+    joint.name = "weld";
+    joint.kind = JointKind::kFixed;
+    joint.body = link;
+    joint.other = above;
+    joint.pose.position = {-0.5 * kLink, 0.0, 0.0};
+    joint.breaks_force = breaks;
+    b.scene.joints.push_back(joint);
+    above = link;
+  }
+  b.set_domain(glm::dvec3(-3.0), glm::dvec3(3.0));
+  return b.scene;
+}
+
+Stress stiff_beam(const Setting& setting, Cost& cost) {
+  const Scene scene = beam(1e3, 0.0);
+  Trial t(scene, setting, cost);
+  double sag = 0.0;
+  t.run(5.0, [&] {
+    for (std::size_t i = 0; i < scene.bodies.size(); ++i)
+      sag = std::max(sag, glm::distance(t.bodies().bodies[i].pose.position, scene.bodies[i].pose.position));
+  });
+  Stress found;
+  found.finite = all_finite(t.world());
+  if (!(sag < kMaxGap)) found.broken = format("it sags by %.2g mm", 1e3 * sag);
+  return found;
+}
+
+// A hand of 10⁶ N/m jerks at its end until all of it is in pieces: each goes on no faster than the hand went.
+Stress torn_beam(const Setting& setting, Cost& cost) {
+  constexpr double kFastest = 3.0;  // m/s, of the hand
+  SceneBuilder b;
+  b.scene = beam(1.0, 50.0);
+  b.add_grip(9, 1e6, 100.0, 0.0, 0.0, {{0.0, 0.0, 0.0}, {1, 0, 0, 0}});
+  Trial t(b.scene, setting, cost);
+  t.handle(0).engaged = true;
+  t.run(0.1);
+  const glm::dvec3 start = t.handle(0).pose.position;
+  double fastest = 0.0, beyond = 0.0;
+  t.run(1.0, [&] {
+    const double time = t.world().time() - 0.1, way = 0.1, turning = kFastest / way;
+    t.handle(0).pose.position =
+        start + glm::dvec3(way * std::sin(turning * time), way * std::sin(2.7 * turning * time) / 2.7, 0.0);
+    t.handle(0).twist.linear =
+        kFastest * glm::dvec3(std::cos(turning * time), std::cos(2.7 * turning * time), 0.0);
+    for (const BodyState& link : t.bodies().bodies)
+      fastest = std::max(fastest, glm::length(link.twist.linear));
+    for (const JointState& joint : t.bodies().joints)
+      if (joint.joined) beyond = std::max(beyond, glm::length(joint.reaction.force));
+  });
+  Stress found;
+  found.finite = all_finite(t.world());
+  const auto& joints = t.bodies().joints;
+  if (std::all_of(joints.begin(), joints.end(), [](const JointState& joint) { return joint.joined; }))
+    found.broken = "nothing broke";
+  if (beyond > 50.0) found.broken = format("a joint that holds bore %.3g N", beyond);
+  // A free link in a light blow may leave with twice the speed of what hit it, and falls beside that.
+  if (!(fastest < 25.0)) found.broken = format("a link flew at %.2g m/s", fastest);
+  return found;
+}
+
 // A blade of a tenth of the fluid's density on a hinge with a motor, in honey.
 Stress stirred_honey(const Setting& setting, Cost& cost) {
   SceneBuilder b;
@@ -147,6 +216,9 @@ std::vector<StressCase> joint_stress() {
       {"whip", "Ten links on hinges that whip", 0.01, true, false, whip},
       {"light_end", "The last of a thousandth of the others' mass", 0.01, true, false, light_end},
       {"heavy_end", "The last of a thousand times the others' mass", 0.01, true, false, heavy_end},
+      {"stiff_beam", "Ten links fixed to each other, a thousand times their mass at the end", 0.01, true,
+       false, stiff_beam},
+      {"torn_beam", "Ten links fixed to each other, torn apart by a jerk", 0.01, true, false, torn_beam},
       {"stiff_door", "A hinged door in a hand of 10⁶ N/m", 0.01, true, false, stiff_door},
       {"stirred_honey", "A light blade on a motor in honey", 0.01, true, true, stirred_honey},
   };
