@@ -139,7 +139,8 @@ TEST(JointNodes, SayWhatIsWrongWithWhatChanges) {
   };
   using Words = std::initializer_list<const char*>;
   expect_catch_error({{"meets", "mork"}}, "base", Words{"'pivot'", "meets", "'mork'", "there is none"});
-  expect_catch_error(json::object(), "plate", Words{"'pivot'", "meets", "not on the other body", "Parent it"});
+  expect_catch_error(json::object(), "plate",
+                     Words{"'pivot'", "meets", "not on the other body", "Parent it"});
   expect_catch_error({{"to", nullptr}}, "base", Words{"'pivot'", "meets", "Take it off its body"});
   expect_catch_error({{"starts_apart", false}}, "base", Words{"'pivot'", "meets", "starts_apart = true"});
 }

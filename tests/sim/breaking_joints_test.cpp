@@ -1,8 +1,10 @@
 // Fixed joints, and joints that let go and close while the world runs, against what mechanics says.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <cstring>
 #include <vector>
 
 #include "tests/support/linkage.h"
@@ -268,6 +270,31 @@ TEST(FixedJoint, ASavedWorldKeepsWhatIsBrokenAndItsStartMendsIt) {
   link.scene.joints[0].breaks_force = 2.0;
   World changed = link.world();
   EXPECT_FALSE(changed.restore(saved)) << "of another scene";
+}
+
+// Version 7 had no word of it: what is joined in the scene was.
+TEST(FixedJoint, AWorldSavedBeforeJointsBrokeIsRead) {
+  Linkage link;
+  add_pendulum(link, 1.0, 0.01, 0.3, 1.0);
+  World world = link.world();
+  run_for(world, 0.2);
+  std::vector<std::uint8_t> saved;
+  ASSERT_TRUE(world.save(saved));
+  // Of its one joint the byte that says whether it holds, 0, and the pose that a fixed one would hold, none.
+  std::vector<std::uint8_t> added(1 + 7 * sizeof(double), 0);
+  const double one = 1.0;
+  std::memcpy(added.data() + 1 + 3 * sizeof(double), &one, sizeof one);
+  const auto at = std::find_end(saved.begin(), saved.end(), added.begin(), added.end());
+  ASSERT_NE(at, saved.end());
+  saved.erase(at, at + static_cast<std::ptrdiff_t>(added.size()));
+  saved[sizeof(std::uint32_t)] = 7;
+  World other = link.world();
+  const Result<bool> restored = other.restore(saved);
+  ASSERT_TRUE(restored) << restored.error().text();
+  EXPECT_TRUE(state_of(other).joints[0].joined);
+  run_for(world, 0.3);
+  run_for(other, 0.3);
+  EXPECT_EQ(world.hash(), other.hash());
 }
 
 }  // namespace
