@@ -16,7 +16,7 @@ constexpr Shipped kShipped[] = {
     {"bucket", slosh::make::make_bucket}, {"spoon", slosh::make::make_spoon},
     {"pour", slosh::make::make_pour},     {"spin", slosh::make::make_spin},
     {"pool", slosh::make::make_pool},     {"probe", slosh::make::make_probe},
-    {"crepe", slosh::make::make_crepe},
+    {"crepe", slosh::make::make_crepe},   {"mixer", slosh::make::make_mixer},
 };
 
 }  // namespace

@@ -18,6 +18,7 @@ SceneWriter make_spin();    ///< paper, section 6.4.3
 SceneWriter make_pool();    ///< paper, section 6.2
 SceneWriter make_probe();   ///< paper, section 3
 SceneWriter make_crepe();   ///< paper, section 6.5
+SceneWriter make_mixer();   ///< paper's discussion: a mixer in a soup
 
 /// A wooden slab, its top at y = 0: a fixed body, or only looked at.
 void add_table(SceneWriter& writer, double width, double depth, bool solid = true);

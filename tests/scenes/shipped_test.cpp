@@ -121,6 +121,7 @@ TEST_P(ShippedScene, GoesThroughGlbUnchanged) {
                              : name == "spin"  ? make::make_spin()
                              : name == "pool"  ? make::make_pool()
                              : name == "crepe" ? make::make_crepe()
+                             : name == "mixer" ? make::make_mixer()
                                                : make::make_probe();
   ASSERT_TRUE(writer.write(folder / (name + ".glb")));
   const auto binary = load_scene(folder / (name + ".glb"));
@@ -138,13 +139,14 @@ TEST_P(ShippedScene, GoesThroughGlbUnchanged) {
 }
 
 INSTANTIATE_TEST_SUITE_P(All, ShippedScene,
-                         ::testing::Values("bucket", "spoon", "pour", "spin", "pool", "probe", "crepe"),
+                         ::testing::Values("bucket", "spoon", "pour", "spin", "pool", "probe", "crepe",
+                                           "mixer"),
                          [](const auto& param) { return std::string(param.param); });
 
 TEST(ShippedScenes, AreListedInOrderWithTitles) {
   const std::vector<SceneEntry> entries = shipped_scenes();
-  ASSERT_EQ(entries.size(), 7u);
-  const char* const names[] = {"bucket", "spoon", "pour", "spin", "pool", "probe", "crepe"};
+  ASSERT_EQ(entries.size(), 8u);
+  const char* const names[] = {"bucket", "spoon", "pour", "spin", "pool", "probe", "crepe", "mixer"};
   for (std::size_t i = 0; i < entries.size(); ++i) {
     EXPECT_EQ(entries[i].name, names[i]);
     EXPECT_GT(entries[i].title.size(), 10u);
