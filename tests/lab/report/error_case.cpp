@@ -12,8 +12,9 @@ double Reading::error() const {
 const std::vector<ErrorCase>& error_cases() {
   static const std::vector<ErrorCase> all = [] {
     std::vector<ErrorCase> cases;
-    for (auto& some : {resting_cases(), thin_wall_cases(), buoyancy_cases(), wave_cases(), viscous_cases(),
-                       plane_flow_cases(), flow_cases(), contact_cases(), heat_cases(), solid_cases()})
+    for (auto& some :
+         {resting_cases(), thin_wall_cases(), buoyancy_cases(), wave_cases(), viscous_cases(),
+          stirring_cases(), plane_flow_cases(), flow_cases(), contact_cases(), heat_cases(), solid_cases()})
       cases.insert(cases.end(), some.begin(), some.end());
     return cases;
   }();

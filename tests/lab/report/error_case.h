@@ -41,6 +41,7 @@ std::vector<ErrorCase> thin_wall_cases();  ///< vessels and plates of one to thr
 std::vector<ErrorCase> buoyancy_cases();   ///< what is lifted, floats and rises
 std::vector<ErrorCase> wave_cases();
 std::vector<ErrorCase> viscous_cases();     ///< torques and drags
+std::vector<ErrorCase> stirring_cases();    ///< what a stirrer's torque tells
 std::vector<ErrorCase> plane_flow_cases();  ///< flows of one direction, and a vortex
 std::vector<ErrorCase> flow_cases();        ///< dam breaks, a column in a flow, a jet
 std::vector<ErrorCase> contact_cases();     ///< bodies alone
