@@ -1,7 +1,9 @@
 // A scene with instruments, from its file to bodies.csv and probes.csv.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <fstream>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <sstream>
@@ -135,6 +137,32 @@ TEST_F(MeasureTest, AnUnpacedRunIsTheSameAgainAndItsReplayMeasuresTheSame) {
   ASSERT_EQ(again.code, 0) << again.err;
   EXPECT_EQ(read_text(file("one", "probes.csv")), read_text(file("again", "probes.csv")));
   EXPECT_EQ(read_text(file("one", "bodies.csv")), read_text(file("again", "bodies.csv")));
+}
+
+// A box glued to the tank that a hand pulls off: told by check, written, and the same in a replay.
+TEST_F(MeasureTest, AJointThatBreaksIsWritten) {
+  json scene = json::parse(read_text(test::test_folder() / "measured.gltf"));
+  for (json& node : scene["nodes"])
+    if (node["name"] == "box") node["children"].push_back(scene["nodes"].size());
+  scene["nodes"].push_back(
+      {{"name", "glue"},
+       {"extras", {{"slosh", "joint"}, {"kind", "fixed"}, {"to", "tank"}, {"breaks_n", 3.0}}}});
+  std::ofstream(test::test_folder() / "measured.gltf") << scene.dump();
+  const Outcome check = test::slosh({"check", "measured.gltf"});
+  EXPECT_NE(check.out.find("glue: fixed of box and tank, breaks above 3 N"), std::string::npos) << check.out;
+  ASSERT_EQ(play("glued", {"--record", "glued.rec"}).code, 0);
+  const auto probes = columns_of(file("glued", "probes.csv"));
+  const std::vector<double>& joined = probes.at("glue_joined");
+  EXPECT_EQ(joined.front(), 1.0);
+  EXPECT_EQ(joined.back(), 0.0);
+  const auto broke = std::find(joined.begin(), joined.end(), 0.0) - joined.begin();
+  const std::vector<double>& force = probes.at("glue_force_n");
+  EXPECT_LE(*std::max_element(force.begin(), force.begin() + broke), 3.0);
+  EXPECT_GT(force[static_cast<std::size_t>(broke)], 3.0);
+  EXPECT_EQ(force.back(), 0.0);
+  EXPECT_EQ(probes.count("glue_angle_rad") + probes.count("glue_way_m"), 0u);
+  ASSERT_EQ(test::slosh({"replay", "glued.rec", "--no-render", "--out", "again"}).code, 0);
+  EXPECT_EQ(read_text(file("glued", "probes.csv")), read_text(file("again", "probes.csv")));
 }
 
 TEST_F(MeasureTest, WhoDoesNotAskGetsNothingAndWhoAsksGetsTheirInterval) {

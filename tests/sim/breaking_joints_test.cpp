@@ -75,6 +75,45 @@ TEST(FixedJoint, BreaksAboveWhatItBearsAndNotBelow) {
   EXPECT_TRUE(falls(0.0, kTorque * (1.0 - kAway)));
 }
 
+// A seam of several: they hold one thing several times, and share its weight in a way that statics leaves
+// open.
+TEST(FixedJoint, SeveralOfOnePairShareItsWeight) {
+  for (const double breaks : {0.0, 0.4 * kG}) {
+    Linkage link;
+    const int body = link.add(2.0, glm::dvec3(0.01));
+    for (const double x : {-0.1, 0.0, 0.1})
+      link.join(JointKind::kFixed, body, -1, {{x, 0.0, 0.0}, {1, 0, 0, 0}}).breaks_force = breaks;
+    World world = link.world();
+    run_for(world, 0.5);
+    const BodySnapshot state = state_of(world);
+    if (breaks > 0.0) {
+      for (const JointState& joint : state.joints) EXPECT_FALSE(joint.joined);
+      continue;
+    }
+    glm::dvec3 sum(0.0);
+    for (const JointState& joint : state.joints) {
+      EXPECT_GT(joint.reaction.force.y, 0.1 * 2.0 * kG);
+      sum += joint.reaction.force;
+    }
+    EXPECT_NEAR(glm::distance(sum, glm::dvec3(0, 2.0 * kG, 0)), 0.0, 1e-6);
+    EXPECT_LT(glm::length(state.bodies[0].pose.position), 1e-8);
+  }
+}
+
+// Of two joints between the same two bodies one may go: they stay one while the other holds.
+TEST(FixedJoint, ThatBreaksLeavesAHingeBesideIt) {
+  Linkage link;
+  add_pendulum(link, 1.0, 0.01, 0.3, 1.0);
+  link.join(JointKind::kFixed, 0, -1, {}).breaks_torque = 0.9 * 0.3 * kG * std::sin(1.0);
+  World world = link.world();
+  run_for(world, 0.3);
+  const BodySnapshot state = state_of(world);
+  EXPECT_FALSE(state.joints[1].joined);
+  EXPECT_TRUE(state.joints[0].joined);
+  EXPECT_LT(state.joints[0].position, -0.2) << "it swings";
+  EXPECT_LT(glm::length(transform_point(state.bodies[0].pose, {0, 0.3, 0})), 1e-9);
+}
+
 // A hinge lets go too: at the bottom of its swing a pendulum pulls by its weight and m ω² L.
 TEST(Hinge, BreaksByTheSwingOfWhatHangsOnIt) {
   constexpr double kMass = 1.0, kInertia = 0.01, kLength = 0.3, kAngle = 1.0;
