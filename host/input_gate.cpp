@@ -191,6 +191,13 @@ void InputGate::fill_input(Hand& hand, std::size_t grip, const BodySnapshot& now
   }
   const GripState nowhere{pose, hand.good.twist, pose, {}, 0.0};
   const GripState& state = grip < now.grips.size() ? now.grips[grip] : nowhere;
+  // Who holds what is away takes hold of it when it comes, where it is by then.
+  if (is_away(state.pose)) {
+    (void)hand.engagement.update(false, now.time, pose, hand.good.twist, hand.gains, state);
+    hand.lost_scale = 0.0;
+    input = {pose, {}, false, 0.0};
+    return;
+  }
   const Company others = company(hand, clock_ns);
   if (engaged && (since <= kCarriedAfter || (since > kYieldAfter && others != Company::kSilent)))
     hand.engagement.carries(state.on_hand);

@@ -62,7 +62,7 @@ constexpr Command kCommands[] = {
     {ConsoleVerb::kBring, "bring", kAtHost | kAtPlay, 1, 1, "needs the name of a body or fluid", "bring NAME",
      "a body that is away appears, a fluid is filled up"},
     {ConsoleVerb::kRemove, "remove", kAtHost | kAtPlay, 1, 1, "needs the name of a body or fluid",
-     "remove NAME", "take a body or a fluid out of the world"},
+     "remove NAME", "a body or a fluid leaves the world"},
     {ConsoleVerb::kStatus, "status", kAtHost, 0, 0, nullptr, "status", "how the world and the links do"},
     {ConsoleVerb::kLog, "log", kAtHost, 0, 0, nullptr, "log", "who did what lately, and when"},
     {ConsoleVerb::kStatus, "status", kAtPeers, 0, 0, nullptr, "status", "how the network and the world do"},

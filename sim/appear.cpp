@@ -115,7 +115,8 @@ Result<bool> World::Impl::bring_body(std::size_t body) {
 Result<bool> World::Impl::fill_volume(std::size_t volume) {
   const FluidVolume& filled = scene.fluid_volumes[volume];
   const std::string where = "'" + filled.name + "'";
-  if (volume >= fillings.size()) return Error{where, "cannot be filled in this world", ""};
+  if (volume >= fillings.size() || fillings[volume].first + fillings[volume].count > filling_places.size())
+    return Error{where, "cannot be filled in this world", ""};
   Pose to_now;
   if (filled.body >= 0) {
     const Body& as = scene.bodies[static_cast<std::size_t>(filled.body)];

@@ -329,7 +329,7 @@ void Server::on_start(const World& world, const HostState& state) {
   BodySnapshot bodies;
   world.fill(bodies);
   std::vector<char> gone;
-  for (const BodyState& body : bodies.bodies) gone.push_back(body.gone);
+  for (const BodyState& body : bodies.bodies) gone.push_back(body.gone && !body.away());
   mailbox_.post([this, state, gone] {
     switches_.told(state);
     gone_ = gone;

@@ -2,6 +2,8 @@
 
 #include <array>
 
+#include "net/clock.h"
+#include "net/grip_start.h"
 #include "peer/app/hand_trouble.h"
 #include "peer/app/run_report.h"
 #include "peer/app/settle_world.h"
@@ -77,6 +79,8 @@ Result<std::unique_ptr<LiveRun>> LocalRun::create(const Prepared& prepared, Devi
         });
     run->host_->add_tap(*run->task_tap_);
   }
+  run->specs_ = devices.specs;
+  run->another_device_ = devices.another;
   ServoOptions servo;
   servo.steps = &run->hands_tap_.steps();
   Result<std::unique_ptr<OwnHands>> own =
@@ -147,6 +151,42 @@ void LocalRun::ask(const RemoteCommand& command, bool typed) {
   });
 }
 
+/// A script belongs to its grip, which has a motion of its own; what a person holds goes with their hand.
+void LocalRun::follow_task(const std::vector<HandMove>& moves) {
+  hands_moved_ = std::min(hands_moved_, moves.size());  // a task that began anew asks anew
+  for (; hands_moved_ < moves.size(); ++hands_moved_) {
+    const HandMove& move = moves[hands_moved_];
+    if (move.from >= specs_.size() || move.to >= specs_.size()) continue;
+    const std::string spec = specs_[move.from];
+    if (spec.empty() || spec == "script") continue;
+    specs_[move.from].clear();
+    hands_->set(move.from, {});
+    on_their_way_.push_back({move.from, move.to, spec, steady_now_ns()});
+  }
+  if (!on_their_way_.empty()) hand_over();
+}
+
+/// A device that is let go is closed once the device loop has parted with it: until then it may not open.
+void LocalRun::hand_over() {
+  constexpr double kLongest = 3.0;  // s
+  const Handover next = on_their_way_.front();
+  hands_->set(next.from, {});
+  Result<HandDevice> made = another_device_(next.to, next.spec, grip_start(prepared_.scene, next.to));
+  Result<bool> opened = true;
+  if (made) opened = open_device(*made.value().device);
+  if (made && opened) {
+    hands_->set(next.to, std::move(made.value()));
+    specs_[next.to] = next.spec;
+  } else if (made && to_seconds(steady_now_ns() - next.since_ns) < kLongest) {
+    return;
+  } else {
+    window_tap_.tell("the hand at " + prepared_.scene.grips[next.from].name + " cannot take " +
+                     prepared_.scene.grips[next.to].name + ": " +
+                     (made ? opened.error() : made.error()).text());
+  }
+  on_their_way_.erase(on_their_way_.begin());
+}
+
 HudFacts LocalRun::facts(double picture_rate) const {
   HudFacts facts;
   facts.title = prepared_.scene.name;
@@ -171,7 +211,10 @@ Rates LocalRun::world_rates() {
   rates.step_ms = progress.step_ms;
   rates.status_steps = progress.status_steps;
   rates.lost = progress.lost;
-  if (task_tap_) rates.task = task_tap_->lines();
+  if (task_tap_) {
+    rates.task = task_tap_->lines();
+    follow_task(rates.task.hands);
+  }
   return rates;
 }
 

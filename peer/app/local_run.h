@@ -1,7 +1,10 @@
 // One run of one world: host, channel and peer joined in one process.
 #pragma once
 
+#include <functional>
 #include <memory>
+#include <string>
+#include <vector>
 
 #include "host/host.h"
 #include "host/task_tap.h"
@@ -50,6 +53,8 @@ class LocalRun final : public LiveRun {
   Rates world_rates() override;
   PeerLine understand(const std::string& line) override;
   void ask(const RemoteCommand& command, bool typed) override;
+  void follow_task(const std::vector<HandMove>& moves);
+  void hand_over();
 
   const Prepared& prepared_;
   std::unique_ptr<Channel> channel_;
@@ -62,6 +67,16 @@ class LocalRun final : public LiveRun {
   std::unique_ptr<Host> host_;
   std::unique_ptr<OwnHands> hands_;
   bool paused_ = false;
+  // Hands that a task gives another tool.
+  struct Handover {
+    std::uint32_t from = 0, to = 0;
+    std::string spec;
+    std::int64_t since_ns = 0;
+  };
+  std::vector<std::string> specs_;  // one a grip; empty = no device of ours
+  std::function<Result<HandDevice>(std::size_t, const std::string&, const Pose&)> another_device_;
+  std::size_t hands_moved_ = 0;  // of the task's
+  std::vector<Handover> on_their_way_;
 };
 
 }  // namespace slosh

@@ -29,6 +29,9 @@ Result<std::unique_ptr<ReplayRun>> ReplayRun::create(keep::Replayer& replayer, c
   Result<std::unique_ptr<WorldFiles>> files = WorldFiles::create(stage, replayer.sampled(), true);
   if (!files) return files.error();
   run->files_ = std::move(files.value());
+  if (!stage.scene.task.empty())
+    run->task_ =
+        std::make_unique<TaskTap>(stage.scene, replayer.sampled(), [](const HostCommand&, const auto&) {});
   if (stage.folder.empty()) return run;
   Result<std::unique_ptr<Table>> wrenches = Table::create(stage.folder / "wrenches.csv", kWrenchesHeader);
   if (!wrenches) return wrenches.error();
@@ -84,6 +87,7 @@ void ReplayRun::run() {
   const double time_step = replayer_.world().plan().time_step;
   show();
   files_->begin(replayer_.world(), replayer_.elapsed());
+  if (task_) task_->on_start(replayer_.world(), {});
   while (!stop_.load(std::memory_order_relaxed) && replayer_.elapsed() + 0.5 * time_step < stage_.seconds) {
     const std::int64_t step_ns = steady_now_ns();
     const Result<bool> stepped = replayer_.step();
@@ -95,6 +99,7 @@ void ReplayRun::run() {
     const std::int64_t now_ns = steady_now_ns();
     step_time_.add(to_seconds(now_ns - step_ns));
     total_ += replayer_.world().times();
+    if (task_) task_->after_step(replayer_.world());
     write_samples();
     files_->step(replayer_.world(), replayer_.elapsed());
     show();
@@ -102,6 +107,7 @@ void ReplayRun::run() {
     shown_time_.store(replayer_.elapsed(), std::memory_order_relaxed);
     shown_rate_.store(replayer_.elapsed() / std::max(wall_, 1e-9), std::memory_order_relaxed);
   }
+  if (task_) task_->on_end(replayer_.world());
   if (wrenches_) wrenches_->flush();
   snapshots_.close();
   running_.store(false, std::memory_order_release);
@@ -124,6 +130,7 @@ Rates ReplayRun::world_rates() {
   rates.time = shown_time_.load(std::memory_order_relaxed);
   rates.real_time = shown_rate_.load(std::memory_order_relaxed);
   rates.lost = shown_lost_.load(std::memory_order_relaxed);
+  if (task_) rates.task = task_->lines();
   return rates;
 }
 
@@ -145,6 +152,10 @@ void ReplayRun::report(RunSummary& s) const {
   s.devices = peaks_;
   s.backend = backend_name(replayer_.backend());
   s.verdict = verdict.text(replayer_.head().spacing);
+  if (task_) {
+    report_task(stage_.scene, task_->done(), s);
+    s.spilled_mass = task_->spilled();
+  }
   if (wrenches_) s.files.emplace_back("wrenches.csv");
   if (wrenches_ && !wrenches_->problem().empty()) s.problems.push_back(wrenches_->problem());
   files_->report(world, s);

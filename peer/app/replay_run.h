@@ -6,6 +6,7 @@
 #include <thread>
 
 #include "host/keep/replay.h"
+#include "host/task_tap.h"
 #include "net/histogram.h"
 #include "peer/app/live_run.h"
 #include "peer/app/prepare.h"
@@ -47,7 +48,8 @@ class ReplayRun final : public LiveRun {
   SnapshotQueue snapshots_;
   std::unique_ptr<Table> wrenches_;  // null where nothing is written
   std::unique_ptr<WorldFiles> files_;
-  double next_snapshot_ = 0.0;  // s since the recording's start
+  std::unique_ptr<TaskTap> task_;  // null where the scene has no task; what steps bring is in the recording
+  double next_snapshot_ = 0.0;     // s since the recording's start
   double next_sample_ = 0.0;
   BodySnapshot bodies_;
   std::vector<DeviceSummary> peaks_;

@@ -92,7 +92,11 @@ Result<DeviceSet> make_devices(const Scene& scene, const std::vector<std::string
     set.devices.push_back(std::move(hand.value().device));
     set.mouse_targets.push_back(std::move(hand.value().mouse));
     set.lent.push_back(std::move(hand.value().lent));
+    set.specs.push_back(spec);
   }
+  set.another = [&scene, has_window, headset](std::size_t grip, const std::string& spec, const Pose& start) {
+    return make_device(scene, grip, spec, start, has_window, headset);
+  };
   return set;
 }
 

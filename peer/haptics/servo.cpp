@@ -245,10 +245,11 @@ void Servo::post_pose(std::size_t i, const Hand& hand) noexcept {
   channel_.pose(i).publish();
 }
 
-/// A body that left the world stands where it was, for good: a spring to it would be one to nothing.
+/// A body that left the world stands where it was, and one that is away is nowhere: a spring to it would be
+/// one to nothing.
 bool Servo::is_gone(const BodySnapshot& bodies, int body) const noexcept {
   const auto at = static_cast<std::size_t>(body);
-  return at < bodies.bodies.size() && bodies.bodies[at].gone;
+  return at < bodies.bodies.size() && (bodies.bodies[at].gone || bodies.bodies[at].away());
 }
 
 /// Whether a hand but that of grip `i` holds the body, as far as the world says.

@@ -4,6 +4,7 @@
 #include <pybind11/stl/filesystem.h>
 #include <stdlib.h>
 
+#include <algorithm>
 #include <cmath>
 #include <fstream>
 #include <map>
@@ -31,6 +32,15 @@ json to_json(const std::string& name, const py::handle& value) {
     for (const auto& [key, each] : value.cast<py::dict>())
       object[key.cast<std::string>()] = to_json(name, each);
     return object;
+  }
+  if (py::isinstance<py::list>(value) || py::isinstance<py::tuple>(value)) {
+    const auto is_object = [](const py::handle& each) { return py::isinstance<py::dict>(each); };
+    if (const py::sequence list = value.cast<py::sequence>();
+        std::any_of(list.begin(), list.end(), is_object)) {
+      json array = json::array();
+      for (const py::handle& each : list) array.push_back(to_json(name, each));
+      return array;
+    }
   }
   const std::optional<Numbers> numbers = numbers_of(value);
   if (!numbers) throw py::type_error(name + ": wants a number, a text, True or False, or a list of numbers");

@@ -31,6 +31,33 @@ py::array_t<double> wrenches(WorldProgram& w) {
   return as_array(std::move(out), {static_cast<py::ssize_t>(w.scene().grips.size()), 6});
 }
 
+py::object task(const WorldProgram& w) {
+  (void)w.world();  // not while it moves
+  if (!w.task()) return py::none();
+  const TaskLines lines = w.task()->lines();
+  const std::vector<TaskState::Done> done = w.task()->done();
+  py::list steps;
+  for (std::size_t i = 0; i < w.scene().task.size(); ++i) {
+    py::dict step;
+    step["say"] = w.scene().task[i].say;
+    step["until"] = in_words(w.scene().task[i].until, w.scene());
+    step["done"] = i < done.size();
+    if (i < done.size()) {
+      step["took_s"] = done[i].took;
+      step["late"] = done[i].late;
+      step["measured"] = done[i].measured;
+    }
+    steps.append(step);
+  }
+  py::dict all;
+  all["title"] = lines.title;
+  all["say"] = lines.say;
+  all["now"] = lines.now;
+  all["hint"] = lines.hint;
+  all["steps"] = steps;
+  return all;
+}
+
 py::bytes save(const WorldProgram& w) {
   std::vector<std::uint8_t> out;
   take(w.world().save(out));
@@ -126,7 +153,7 @@ void bind_changes(py::class_<WorldProgram>& c) {
           "The dampers stay.")
       .def(
           "appear",
-          [](WorldProgram& w, const std::string& name) { w.change({HostAction::kAppear, w.thing(name)}); },
+          [](WorldProgram& w, const py::object& which) { w.change({HostAction::kAppear, w.thing(which)}); },
           py::arg("name"),
           "Brings a body that is away to where the scene has it, or fills a fluid volume (its node's name), "
           "as "
@@ -134,8 +161,13 @@ void bind_changes(py::class_<WorldProgram>& c) {
           "bodies and fluid leave it free. Raises slosh.Error where there is no room.")
       .def(
           "take_away",
-          [](WorldProgram& w, const std::string& name) { w.change({HostAction::kTakeAway, w.thing(name)}); },
+          [](WorldProgram& w, const py::object& which) { w.change({HostAction::kTakeAway, w.thing(which)}); },
           py::arg("name"), "Takes a body, or the particles of a fluid volume, out of the world.")
+      .def_property_readonly(
+          "task", &task,
+          "Where the scene's guided task is, followed as the world is stepped (scenes/TASKS.md): title, say, "
+          "now,\n"
+          "hint, and steps with say, until, done and, once done, took_s, late, measured. None without one.")
       .def("reset", &WorldProgram::reset,
            "Puts the world back to where it began, at time 0: as it was made, or as settle() left it last. "
            "Hands, and\n"

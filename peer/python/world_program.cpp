@@ -92,6 +92,7 @@ WorldProgram::WorldProgram(std::shared_ptr<const Scene> scene, const WorldProgra
   });
   if (options.settle) settle(std::nullopt);
   if (start_.empty()) take(world_->save(start_));
+  follow_task();
 }
 
 double WorldProgram::choose_spacing_of(const WorldProgramOptions& options) {
@@ -129,12 +130,10 @@ std::size_t WorldProgram::fluid(const py::object& which) const {
   return index_of(which, names_of(scene_->fluids), "fluid");
 }
 
-std::uint32_t WorldProgram::thing(const std::string& name) const {
-  const std::size_t found = find_thing(*scene_, name);
-  if (found == thing_count(*scene_))
-    throw Raised(
-        {"slosh.World", "has no body or fluid volume '" + name + "'", "Scene.bodies has their names"});
-  return static_cast<std::uint32_t>(found);
+std::uint32_t WorldProgram::thing(const py::object& which) const {
+  std::vector<std::string> names;
+  for (std::size_t i = 0; i < thing_count(*scene_); ++i) names.push_back(thing_name(*scene_, i));
+  return static_cast<std::uint32_t>(index_of(which, names, "body or fluid volume"));
 }
 
 void WorldProgram::hold(const py::object& which, const py::object& source) {
@@ -147,6 +146,20 @@ void WorldProgram::refuse_while_moving() const {
     throw Raised({"slosh.World", "it is being stepped by another thread",
                   "Read it when that call is over, or from the functions that the call itself calls"});
   }
+}
+
+/// From the world as it is now on; what its steps bring comes between steps, as with a host.
+void WorldProgram::follow_task() {
+  if (scene_->task.empty()) return;
+  task_ =
+      std::make_unique<TaskTap>(*scene_, sampled_, [this](const HostCommand& command, const auto& answer) {
+        const Result<bool> done = change_world(*world_, command);
+        if (done && recording_)
+          recording_->after_change(*world_, command,
+                                   state_of(*world_, scene_->fluids.size(), false, resets_));
+        answer(done);
+      });
+  task_->on_start(*world_, {});
 }
 
 void WorldProgram::begin_move() {
@@ -183,6 +196,7 @@ void WorldProgram::one_step(std::span<const HandleInput> hands) {
   if (recording_) recording_->before_step(*world_, StepInput{hands, {}});
   world_->step(hands);
   if (recording_) recording_->after_step(*world_);
+  if (task_) task_->after_step(*world_);
   status_ |= world_->take_status();
   if (status_ & kStatusDeviceLost)
     throw Raised({"the GPU", world_->failure(), "Run again with backend=\"cpu\""});

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "host/keep/recording.h"
+#include "host/task_tap.h"
 #include "peer/python/hand.h"
 #include "peer/python/interrupts.h"
 #include "peer/python/moment.h"
@@ -35,10 +36,10 @@ class WorldProgram {
   /// Samples, plans, settles. Raises slosh.Error, ValueError.
   WorldProgram(std::shared_ptr<const Scene> scene, const WorldProgramOptions& options);
 
-  std::size_t grip(const py::object& name_or_number) const;   ///< raises KeyError with the names
-  std::size_t body(const py::object& name_or_number) const;   ///< likewise
-  std::size_t fluid(const py::object& name_or_number) const;  ///< likewise
-  std::uint32_t thing(const std::string& name) const;         ///< a body or fluid volume (thing_name)
+  std::size_t grip(const py::object& name_or_number) const;     ///< raises KeyError with the names
+  std::size_t body(const py::object& name_or_number) const;     ///< likewise
+  std::size_t fluid(const py::object& name_or_number) const;    ///< likewise
+  std::uint32_t thing(const py::object& name_or_number) const;  ///< a body or fluid volume (thing_name)
 
   void hold(const py::object& grip, const py::object& source);
   void step(long steps);
@@ -66,6 +67,8 @@ class WorldProgram {
   const std::shared_ptr<Moment>& pressures() { return moments_.pressures(world()); }
   const BodySnapshot& bodies();
   const Measurement& measure();
+  /// The scene's guided task, followed as it is stepped; null where it has none.
+  const TaskTap* task() const { return task_.get(); }
 
   /// Recordings: slosh replay, slosh.Recording and slosh.replay() read them.
   void record(const std::filesystem::path& file);
@@ -79,6 +82,7 @@ class WorldProgram {
   void let_read();
   std::span<const HandleInput> inputs();
   void one_step(std::span<const HandleInput> hands);
+  void follow_task();
   struct Moving;
 
   std::shared_ptr<const Scene> scene_;
@@ -91,6 +95,7 @@ class WorldProgram {
   std::vector<std::uint8_t> start_;  // World::save of what a reset goes back to
   std::unique_ptr<Instruments> instruments_;
   std::unique_ptr<keep::RecordingWriter> recording_;
+  std::unique_ptr<TaskTap> task_;
   Moments moments_;
   BodySnapshot bodies_;
   bool bodies_known_ = false;

@@ -131,7 +131,7 @@ void read_meets(const Reading& reading, Extras& extras, Joint& joint) {
     return extras.fail(
         "meets", "names '" + name + (count == 0 ? "', and there is none" : "', and several are called so"),
         "Name an empty that is a child of the other body, where the two are to meet");
-  const int up = holder(reading, found);
+  const int up = body_node_above(reading, found);
   const int body = up < 0 ? -1 : reading.body_of_node.at(up);
   if (body != joint.other)
     return extras.fail("meets", "names '" + name + "', which is not on the other body",

@@ -60,6 +60,8 @@ void compare_viscous_step();
 void compare_slipping();
 /// warm_worlds.cpp: heat, setting and bonds.
 void compare_warm();
+/// The same file: what comes and goes.
+void compare_coming();
 /// pressed_worlds.cpp: pressure projection; single steps of it.
 void compare_pressed();
 void compare_pressed_steps();

@@ -297,9 +297,11 @@ int main(int argc, char** argv) {
   if (quick || whole || part == "slipping") compare_slipping();
   if (quick || whole) compare_parting_pairs();
   if (quick || whole || part == "warm") compare_warm();
+  if (quick || whole || part == "coming") compare_coming();
   if (whole || part == "viscous") compare_viscous();
   if (whole || part == "pressed") compare_pressed();
-  if (part == "viscous" || part == "pressed" || part == "slipping" || part == "warm") return conclude();
+  if (part == "viscous" || part == "pressed" || part == "slipping" || part == "warm" || part == "coming")
+    return conclude();
   compare_single_steps();
   if (quick) return conclude();
   // Large enough to fill the GPU: blocks come and go in another order each time.

@@ -1,4 +1,4 @@
-// Heat, setting and bonds on both.
+// Heat, setting and bonds on both, and what comes and goes.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -75,6 +75,50 @@ void compare_warm() {
     expect_true("some has set", cpu.diagnostics().cure > 0.01);
     compare_restored("heat and bonds", tank, 0.09);
   }
+}
+
+namespace {
+
+// A block of set water over the tank that is filled twice, and a paddle that goes and comes.
+Tank coming_tank() {
+  Tank tank = warm_tank(ParticleModel::kCorrected);
+  const auto first = static_cast<std::uint32_t>(tank.sampled.fluid_positions.size());
+  add_fluid_block(tank.scene, tank.sampled, 0, {-0.02, 0.16, -0.02}, {0.02, 0.19, 0.02});
+  tank.scene.fluid_volumes.back().starts_away = true;
+  tank.scene.fluid_volumes.back().fillings = 2;
+  const auto count = static_cast<std::uint32_t>(tank.sampled.fluid_positions.size()) - first;
+  tank.sampled.fillings.assign(tank.scene.fluid_volumes.size(), {});
+  tank.sampled.fillings.back() = {first, count, first + count, count};
+  for (std::uint32_t i = 0; i < count; ++i) {
+    tank.sampled.fluid_positions.push_back(tank.sampled.fluid_positions[first + i]);
+    tank.sampled.fluid_velocities.emplace_back(0.0f);
+    tank.sampled.fluid_index.push_back(0);
+  }
+  return tank;
+}
+
+}  // namespace
+
+void compare_coming() {
+  std::printf("what comes and goes\n");
+  const Tank tank = coming_tank();
+  World cpu = world_on(Backend::kCpu, tank);
+  World gpu = world_on(Backend::kCuda, tank);
+  const std::size_t filling = thing_count(tank.scene) - 1;
+  const auto both = [&](const char* what, auto&& change) {
+    const bool done = static_cast<bool>(change(cpu)) && static_cast<bool>(change(gpu));
+    expect_true(what, done);
+    step(cpu, 0.09);
+    step(gpu, 0.09);
+    const Diagnostics a = cpu.diagnostics(), b = gpu.diagnostics();
+    expect_true("as many particles", a.particles == b.particles && a.retired == b.retired);
+    compare_worlds(cpu, gpu, 1e-5);
+  };
+  both("a filling comes", [&](World& world) { return world.appear(filling); });
+  both("it goes", [&](World& world) { return world.take_away(filling); });
+  both("it comes again", [&](World& world) { return world.appear(filling); });
+  both("the paddle goes", [&](World& world) { return world.take_away(1); });
+  both("the paddle comes", [&](World& world) { return world.appear(1); });
 }
 
 }  // namespace slosh::testing

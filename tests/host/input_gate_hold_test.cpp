@@ -37,6 +37,27 @@ TEST(InputGate, AGripThatIsTakenFarFromTheBodyIsLetInSlowly) {
   EXPECT_EQ(before, 0.30);
 }
 
+// A hand that held on while its body was away takes hold of it where that comes, and is not tied to nowhere.
+TEST(InputGate, ABodyThatComesIsTakenHoldOfWhereItIs) {
+  const Scene scene = scene_with_grips(1);
+  InputGate gate(scene);
+  Channel channel(1, BodyMessage{}, 1000);
+  BodySnapshot now = snapshot_with_grips(1);
+  now.grips[0].pose.position = glm::dvec3(kAway);
+  tell(channel, message(0, 0.30));
+  for (int i = 0; i < 100; ++i) {
+    now.time = 0.001 * i;
+    EXPECT_FALSE(gate.take(channel, now)[0].engaged);
+  }
+  now.grips[0].pose = {};
+  for (int i = 0; i < 100; ++i) {
+    now.time = 0.1 + 0.001 * i;
+    const HandleInput input = gate.take(channel, now)[0];
+    EXPECT_TRUE(input.engaged);
+    EXPECT_LE(input.pose.position.x, 0.001 * kRampSpeed * (i + 1) + 1e-9);
+  }
+}
+
 /// A hand that holds quietly, then is elsewhere: 0.2 m and 200 N away.
 struct MovedHand {
   Scene scene = scene_with_grips(1);

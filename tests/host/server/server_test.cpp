@@ -352,7 +352,7 @@ TEST_F(ServerTest, EverybodySeesWhereTheTaskIs) {
   old.hello(hold, "Old");
   go(1.0);
   EXPECT_TRUE(ana.tasks.empty()) << "the scene has none";
-  task = {"step 1 of 2", "Pour.", "0 kg", ""};
+  task = {"step 1 of 2", "Pour.", "0 kg", "", {}};
   go(0.5);
   ASSERT_EQ(ana.tasks.size(), 1u);
   EXPECT_EQ(ana.tasks[0].title, "step 1 of 2");
@@ -364,13 +364,14 @@ TEST_F(ServerTest, EverybodySeesWhereTheTaskIs) {
   go(2.0, 0.005, [&] { task.now = std::to_string(++step) + " kg"; });
   EXPECT_GE(ana.tasks.size(), 7u);
   EXPECT_LE(ana.tasks.size(), 10u) << "four a second";
-  task = {"step 2 of 2", "Stop.", "", "Now."};
+  task = {"step 2 of 2", "Stop.", "", "Now.", {{0, 1}}};
   go(0.5);
   // Who comes later, or back, finds it where it is.
   const ScriptedPeer& eve = join(3, watch, "Eve");
   ASSERT_EQ(eve.tasks.size(), 1u);
   EXPECT_EQ(eve.tasks[0].say, "Stop.");
   EXPECT_EQ(eve.tasks[0].hint, "Now.");
+  EXPECT_EQ(eve.tasks[0].hands, (std::vector<HandMove>{{0, 1}}));
   EXPECT_TRUE(old.tasks.empty()) << "an earlier peer is not told what it does not know";
 }
 

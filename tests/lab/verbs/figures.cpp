@@ -28,6 +28,9 @@ const char* scene_of_figure(int number) {
       return "spin";
     case 11:
       return "bucket";
+    case 12:
+    case 13:
+      return "crepe";
     default:
       return nullptr;
   }

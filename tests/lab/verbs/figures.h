@@ -1,4 +1,4 @@
-// The paper's Figures 8 to 11: what each shows, and what the paper's words say of it, held against a run in
+// The paper's Figures 8 to 13: what each shows, and what the paper's words say of it, held against a run in
 // numbers.
 #pragma once
 
@@ -29,7 +29,7 @@ struct Phase {
   double from = 0.0, to = 0.0;  ///< s
 };
 
-/// The shipped scene that a figure is of; null where there is no such figure here (8–11 are).
+/// The shipped scene that a figure is of; null where there is no such figure here (8–13 are).
 const char* scene_of_figure(int number);
 
 /// Figure 8: the spoon. `tare`: the wrench at rest, before the first stroke, is taken off what is drawn.
@@ -40,5 +40,9 @@ FigureParts judge_pour(const ScriptedRun& run);
 FigureParts judge_spin(const ScriptedRun& run, const std::string& model);
 /// Figure 11: a bucket in a left and a right hand.
 FigureParts judge_bucket(const ScriptedRun& run);
+/// Figure 12: batter poured from the crêpe's bowl into its pan.
+FigureParts judge_crepe_pour(const ScriptedRun& run);
+/// Figure 13: its batter stirred, and syrup poured on it.
+FigureParts judge_crepe_tools(const ScriptedRun& run);
 
 }  // namespace slosh

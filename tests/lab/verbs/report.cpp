@@ -252,9 +252,12 @@ void add_report(CLI::App& app, VerbRun& chosen) {
   CLI::App* figure =
       verb->add_subcommand("figure", "A figure of the paper again, judged against the paper's words");
   auto which = std::make_shared<FigureOptions>();
-  figure->add_option("N", which->number, "8 spoon, 9 pouring, 10 spinning glasses, 11 bucket in two hands")
+  figure
+      ->add_option("N", which->number,
+                   "8 spoon, 9 pouring, 10 spinning glasses, 11 bucket in two hands, 12 and 13 the crêpe: "
+                   "poured, and\nstirred and topped with syrup")
       ->required()
-      ->check(CLI::IsMember({"8", "9", "10", "11"}));
+      ->check(CLI::IsMember({"8", "9", "10", "11", "12", "13"}));
   figure->add_option("--spacing", which->spacing, "Metres between particles (the scene's coarsest)")
       ->check(in_range(1e-4, 1.0));
   figure->add_flag("--tare", which->tare, "Figure 8 without what the hand carries at rest");

@@ -44,7 +44,7 @@ int report_speed(const ReportOptions& options, const SpeedOptions& speed);
 int report_picture(const ReportOptions& options);
 
 struct FigureOptions {
-  int number = 8;            ///< of the paper, 8–11
+  int number = 8;            ///< of the paper, 8–13
   double spacing = 0.0;      ///< m; 0: the scene's coarsest
   bool tare = false;         ///< Figure 8 less what the hand carries at rest
   std::string plot = "png";  ///< of plot_formats()

@@ -59,6 +59,10 @@ FigureParts judge(const FigureOptions& figure, const ScriptedRun& run, const Sce
     case 10:
       return judge_spin(run,
                         scene.model == ParticleModel::kPaper ? "the paper's model" : "the default model");
+    case 12:
+      return judge_crepe_pour(run);
+    case 13:
+      return judge_crepe_tools(run);
     default:
       return judge_bucket(run);
   }

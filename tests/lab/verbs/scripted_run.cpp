@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <fstream>
+#include <optional>
 
+#include "host/task_tap.h"
 #include "net/grip_start.h"
 #include "peer/haptics/pose_track.h"
 #include "peer/output/recorder.h"
@@ -36,10 +38,19 @@ ScriptedRun run_scripted(const Scene& scene, report::Setting setting, double sec
     hold(0.0);
     for (std::size_t i = 0; i < tracks.size(); ++i) trial.handle(i).twist = Twist{};
     if (scene.settle > 0.0) trial.settle(scene.settle, true);
+    // What the scene's task brings comes here too.
+    std::optional<TaskTap> task;
+    if (!scene.task.empty()) {
+      task.emplace(scene, trial.sampled(), [&trial](const HostCommand& command, const auto& answer) {
+        answer(change_world(trial.world(), command));
+      });
+      task->on_start(trial.world(), {});
+    }
     const long steps = std::max(1L, std::lround(seconds / trial.world().plan().time_step));
     for (long step = 0; step < steps; ++step) {
       hold(trial.world().time());
       trial.step();
+      if (task) task->after_step(trial.world());
       const BodySnapshot& now = trial.bodies();
       for (std::size_t i = 0; i < tracks.size(); ++i) {
         run.hands[i].time.push_back(now.time);

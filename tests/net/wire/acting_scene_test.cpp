@@ -74,6 +74,38 @@ TEST(ActingScene, JointsThatChangeTravel) {
   EXPECT_EQ(packed(scene)[0], 7);
 }
 
+TEST(ActingScene, WhatComesAndGoesTravelsToo) {
+  Scene scene = test::small_scene();
+  const int bodies = static_cast<int>(scene.bodies.size());
+  scene.bodies[1].motion = BodyMotion::kDriven;
+  scene.bodies[1].keys = {{0.0, scene.bodies[1].pose}};
+  scene.bodies[1].starts_away = true;
+  scene.fluid_volumes[0].fillings = 3;
+  scene.fluid_volumes[0].body = 1;
+  scene.regions.push_back({"in it", 0, -1, {}});
+  scene.task = {{"Fill it.", "", {GoalKind::kTilt, scene.bodies[1].name, 1}}};
+  scene.task[0].until.at_most = 10.0;
+  scene.task[0].then = {
+      {TaskActKind::kAppears, 1, -1}, {TaskActKind::kTakesAway, bodies, 0}, {TaskActKind::kHandTakes, 0, 0}};
+  const Bytes all = packed(scene);
+  EXPECT_EQ(all[0], 7);
+  const Result<UnpackedScene> back = unpack_scene(all);
+  ASSERT_TRUE(static_cast<bool>(back)) << back.error().text();
+  test::expect_same_scene(back.value().scene, scene);
+  const auto refused = [&](const char* why) {
+    const std::string said = pack_scene(scene, 0.01, SceneParts::kAll).error().text();
+    EXPECT_NE(said.find(why), std::string::npos) << said;
+  };
+  scene.task[0].then[1].other = 5;
+  refused("is not in the scene");
+  scene.task[0].then = {{TaskActKind::kAppears, 0, -1}};
+  scene.bodies[0].motion = BodyMotion::kFixed;
+  refused("stays there for good");
+  scene.task[0].then.clear();
+  scene.bodies[0].starts_away = true;
+  refused("is of a fixed body");
+}
+
 // A goal that says it has more parts than come, and one with a part too many.
 TEST(ActingScene, GoalsThatDoNotFitTheirStepsAreRefused) {
   wire::ActingScene acting{

@@ -68,6 +68,9 @@ void expect_same_scene(const Scene& a, const Scene& b) {
     SAME(fluid_volumes[i].fluid);
     SAME(fluid_volumes[i].pose);
     SAME(fluid_volumes[i].velocity);
+    SAME(fluid_volumes[i].starts_away);
+    SAME(fluid_volumes[i].fillings);
+    SAME(fluid_volumes[i].body);
   }
   for (std::size_t i = 0; i < a.bodies.size(); ++i) {
     SAME(bodies[i].name);
@@ -87,6 +90,7 @@ void expect_same_scene(const Scene& a, const Scene& b) {
     SAME(bodies[i].material);
     SAME(bodies[i].temperature);
     SAME(bodies[i].repeats);
+    SAME(bodies[i].starts_away);
     expect_same_keys(a.bodies[i].keys, b.bodies[i].keys);
   }
   for (std::size_t i = 0; i < a.pictures.size(); ++i) {

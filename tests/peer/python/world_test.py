@@ -149,6 +149,58 @@ class Runs(unittest.TestCase):
             w.set_viscosity("beer", 1.0)
         self.assertIn(fluid.name, str(raised.exception))
 
+    def test_what_comes_and_goes(self):
+        with tempfile.TemporaryDirectory() as folder:
+            file = os.path.join(folder, "run.rec")
+            w = world()
+            fluid, body = "water", "ball"
+            there = w.measure().particles
+            w.record(file)
+            w.run(0.1)
+            w.take_away(fluid)
+            self.assertEqual(w.measure().particles, 0)
+            with self.assertRaises(slosh.Error):
+                w.take_away(fluid)
+            w.take_away(body)
+            w.run(0.1)
+            w.appear(fluid)
+            w.appear(body)
+            with self.assertRaises(slosh.Error) as raised:
+                w.appear(body)
+            self.assertIn("is there already", str(raised.exception))
+            w.run(0.1)
+            self.assertGreater(w.measure().particles, 0.9 * there)
+            with self.assertRaises(KeyError) as raised:
+                w.appear("beer")
+            self.assertIn(fluid, str(raised.exception))
+            w.stop_recording()
+            again = slosh.replay(file, threads=1)
+            self.assertTrue(again.same, again.verdict)
+            changes = [change[1] for change in slosh.Recording(file).changes]
+            self.assertEqual(changes, ["take_away", "take_away", "appear", "appear"])
+
+    def test_it_follows_a_task(self):
+        self.assertIsNone(world().task)
+        builder = slosh.SceneBuilder(title="dip", task=[
+            {"say": "Move it.", "until": {"speed_m_s": "ball", "at_least": 0.01}, "then": {"takes_away": "water"}},
+            {"say": "Fly.", "until": {"any": [{"speed_m_s": "ball", "at_least": 99},
+                                              {"tilt_deg": "ball", "at_least": 90}]}}])
+        builder.body("tank", slosh.tank((0.10, 0.10, 0.10), 0.02))
+        builder.fluid("water", slosh.box((-0.05, 0.02, -0.05), (0.05, 0.08, 0.05)), viscosity_pa_s=0.5)
+        builder.body("ball", slosh.sphere(0.02), pose=(0.0, 0.3, 0.0), motion="free", mass_kg=0.1)
+        w = slosh.World(builder.scene(), 0.011, threads=1, settle=False)
+        self.assertEqual(w.task["title"], "step 1 of 2")
+        w.run(0.1)
+        task = w.task
+        self.assertEqual([step["done"] for step in task["steps"]], [True, False])
+        self.assertAlmostEqual(task["steps"][0]["took_s"], 0.05, delta=0.005)
+        self.assertAlmostEqual(task["steps"][0]["measured"][0], 0.05 * 9.81, delta=0.02)
+        self.assertEqual(w.measure().particles, 0)
+        self.assertIn("speed of ball", task["now"])
+        w.reset()
+        w.run(0.02)
+        self.assertEqual(w.task["title"], "step 1 of 2")
+
     def test_what_is_wrong_is_said(self):
         scene = slosh.load_scene("spoon")
         for options in [{"spacing": 5.0}, {"spacing": "coarse"}, {"backend": "abacus"}, {"threads": -1}]:

@@ -183,6 +183,31 @@ Stress long_step(const Setting& setting, Cost& cost) {
   return watch.found();
 }
 
+// Filled to the last particle that there is room for, taken away, and filled again, ten times a second.
+Stress filled_anew(const Setting& setting, Cost& cost) {
+  SceneBuilder b;
+  b.add_fluid(1000.0, 0.05);
+  b.add_fixed("tank", tank_at_floor({0.16, 0.2, 0.16}, 0.03));
+  b.add_volume(make::box({-0.08, 0.0, -0.08}, {0.08, 0.05, 0.08}));
+  b.add_volume(make::box({-0.03, 0.1, -0.03}, {0.03, 0.16, 0.03}));
+  b.scene.fluid_volumes.back().starts_away = true;
+  b.scene.fluid_volumes.back().fillings = 3;
+  b.set_domain({-0.4, -0.3, -0.4}, {0.4, 0.6, 0.4});
+  Trial t(b.scene, setting, cost);
+  Watch watch(t, b.scene);
+  const std::size_t filling = thing_count(b.scene) - 1;
+  int filled = 0, refused = 0;
+  for (int i = 0; i < 20; ++i) {
+    watch.run(0.1);
+    const bool came = static_cast<bool>(t.world().appear(filling));
+    (came ? filled : refused) += 1;
+    if (!came && !t.world().take_away(filling)) return {.broken = "what is full cannot be emptied"};
+  }
+  Stress found = watch.found(0.01);
+  if (filled < 5 || refused < 2) found.broken = "it was hardly ever filled, or never full";
+  return found;
+}
+
 }  // namespace
 
 std::vector<StressCase> fluid_stress() {
@@ -209,6 +234,7 @@ std::vector<StressCase> fluid_stress() {
       {"particles_1", "One particle", 0.01, true, true, few<1>},
       {"particles_2", "Two", 0.01, true, true, few<2>},
       {"particles_10", "Ten", 0.01, true, true, few<10>},
+      {"filled_anew", "Filled, emptied and filled again ten times a second", 0.01, true, true, filled_anew},
       {"step_10", "Ten times the plan's time step", 0.01, true, true, long_step},
   };
 }
