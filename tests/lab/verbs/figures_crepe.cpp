@@ -17,38 +17,61 @@ double down(const Wrench& w) {
   return -w.force.y;
 }
 
-/// The run up to a time, with these hands alone.
-ScriptedRun part_of(const ScriptedRun& run, double until, const std::vector<std::size_t>& hands) {
-  ScriptedRun part;
-  const std::vector<double>& time = run.hands.front().time;
-  const auto rows = std::ranges::upper_bound(time, until) - time.begin();
-  for (const std::size_t hand : hands) {
-    const WrenchSeries& all = run.hands[hand];
-    part.hands.push_back(
-        {{all.time.begin(), all.time.begin() + rows}, {all.on_hand.begin(), all.on_hand.begin() + rows}});
-    part.poses.emplace_back(run.poses[hand].begin(), run.poses[hand].begin() + rows);
-    part.centers.emplace_back(run.centers[hand].begin(), run.centers[hand].begin() + rows);
+/// Stretches in which a hand is more than `high` m over where it began, from when it has been there for a
+/// second.
+std::vector<Phase> lifted(const ScriptedRun& run, std::size_t hand, double high) {
+  std::vector<Phase> found;
+  bool up = false;
+  for (std::size_t i = 0; i < run.poses[hand].size(); ++i) {
+    const double time = run.hands[hand].time[i];
+    const bool now = run.poses[hand][i].position.y - run.poses[hand].front().position.y > high;
+    if (now && !up) found.push_back({"lifted", time + 1.0, time + 1.0});
+    if (now) found.back().to = std::max(found.back().from, time);
+    up = now;
   }
-  return part;
+  return found;
 }
 
 }  // namespace
 
 FigureParts judge_crepe_pour(const ScriptedRun& run) {
-  // Up to when the bowl is upright again; later the pan is tilted, and the bowl taken away.
   const WrenchSeries& bowl = run.hands[kBowlHand];
+  const WrenchSeries& pan = run.hands[kPanHand];
   const std::vector<Phase> turns = strokes(bowl.time, turning(run, kBowlHand));
-  double upright = bowl.time.back();
-  for (std::size_t i = 1; i < turns.size(); ++i)
-    if (turns[i - 1].name != turns[i].name) {
-      upright = turns[i].to;
-      break;
-    }
-  FigureParts parts = judge_pour(part_of(run, upright, {kBowlHand, kPanHand}));
-  parts.claims[0].paper =
-      "he feels the weight shifting between his hands as the batter goes from the bowl to the pan";
-  parts.claims[1].paper = "he feels the forces and torques from the pouring movement (torque peak)";
-  parts.claims[2].paper = "the same (torque decrease once it has run out)";
+  const double end = bowl.time.back();
+  const double tilt = turns.empty() ? end : turns.front().from;
+  const double back = turns.size() > 1 ? turns.back().from : end;
+  const Phase rest{"", std::max(tilt - 1.0, 0.0), tilt}, poured{"", back - 0.3, back};
+  // The pan stands on the hob while it is poured into; its hand feels what it holds once it is lifted. Empty
+  // it is lifted last.
+  const std::vector<Phase> lifts = lifted(run, kPanHand, 0.025);
+  const double full = lifts.empty() ? 0.0 : mean(pan, lifts.front(), down);
+  const Phase last{"", end - 1.0, end};
+  const double empty = mean(pan, last, down);
+  const double lost = mean(bowl, rest, down) - mean(bowl, poured, down), gained = full - empty;
+  const WrenchSeries inside = about_centers(run, kBowlHand);
+  const double at_rest = mean(inside, rest, torque_size);
+  const figure::Peak top = peak(inside, {"", tilt, back}, torque_size);
+  const double emptied = mean(inside, poured, torque_size);
+
+  FigureParts parts;
+  parts.panels = {panel_of("", "weight in the hand, N"),
+                  panel_of("", "torque about the middle of the bowl, N\xC2\xB7m")};
+  parts.panels[0].series = {curve("bowl", bowl, down, 1), curve("pan", pan, down, 0)};
+  parts.panels[1].series = {curve("bowl", inside, torque_size, 1)};
+  for (ChartPanel& panel : parts.panels)
+    mark_phases(panel, {{"stir", 0.0, tilt}, {"pour", tilt, back}, {"bake, serve", back, end}});
+  parts.claims = {
+      {"the user feels the forces and torques from the pouring movement",
+       format("about the bowl's middle %.4f N\xC2\xB7m at rest, %.4f N\xC2\xB7m at the peak, %.4f "
+              "N\xC2\xB7m once it is empty",
+              at_rest, top.value, emptied),
+       top.value > 2.0 * at_rest && emptied < 0.5 * top.value},
+      {"as well as the weight shifting between his hands as the batter goes from the bowl to the pan",
+       format("the bowl's hand loses %.3f N, the pan's, lifted off its hob, holds %.3f N more than with "
+              "nothing in it (%.0f %%)",
+              lost, gained, lost > 0.0 ? 100.0 * gained / lost : 0.0),
+       lost > 0.5 && gained > 0.9 * lost && gained < 1.02 * lost}};
   return parts;
 }
 
@@ -57,9 +80,11 @@ FigureParts judge_crepe_tools(const ScriptedRun& run) {
   const WrenchSeries& ladle = run.hands[kLadleHand];
   // While the whisk goes round in the batter its way across is all that it moves.
   const std::vector<glm::dvec3> velocity = velocities(run, kWhiskHand);
-  std::vector<double> across, against;
-  double fastest = 0.0;
-  for (const glm::dvec3& v : velocity) fastest = std::max(fastest, std::hypot(v.x, v.z));
+  double low = run.poses[kWhiskHand].front().position.y, fastest = 0.0;
+  for (const Pose& pose : run.poses[kWhiskHand]) low = std::min(low, pose.position.y);
+  const auto is_low = [&](std::size_t i) { return run.poses[kWhiskHand][i].position.y < low + 0.02; };
+  for (std::size_t i = 0; i < velocity.size(); ++i)
+    if (is_low(i)) fastest = std::max(fastest, std::hypot(velocity[i].x, velocity[i].z));
   double begin = whisk.time.back(), end = 0.0, opposed = 0.0, all = 0.0;
   WrenchSeries resisting;
   for (std::size_t i = 0; i < whisk.time.size(); ++i) {
@@ -67,8 +92,7 @@ FigureParts judge_crepe_tools(const ScriptedRun& run) {
     const double along = whisk.on_hand[i].force.x * velocity[i].x + whisk.on_hand[i].force.z * velocity[i].z;
     resisting.time.push_back(whisk.time[i]);
     resisting.on_hand.push_back({{speed > 1e-6 ? -along / speed : 0.0, 0.0, 0.0}, {}});
-    const bool stirs = whisk.time[i] < 8.0 && speed > 0.3 * fastest && std::abs(velocity[i].y) < 0.3 * speed;
-    if (!stirs) continue;
+    if (!is_low(i) || speed < 0.5 * fastest) continue;
     begin = std::min(begin, whisk.time[i]);
     end = std::max(end, whisk.time[i]);
     all += 1.0;

@@ -182,7 +182,7 @@ class Runs(unittest.TestCase):
     def test_it_follows_a_task(self):
         self.assertIsNone(world().task)
         builder = slosh.SceneBuilder(title="dip", task=[
-            {"say": "Move it.", "until": {"speed_m_s": "ball", "at_least": 0.01}, "then": {"takes_away": "water"}},
+            {"say": "Move it.", "until": {"speed_m_s": "ball", "at_least": 0.3}, "then": {"takes_away": "water"}},
             {"say": "Fly.", "until": {"any": [{"speed_m_s": "ball", "at_least": 99},
                                               {"tilt_deg": "ball", "at_least": 90}]}}])
         builder.body("tank", slosh.tank((0.10, 0.10, 0.10), 0.02))
