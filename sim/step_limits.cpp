@@ -157,16 +157,38 @@ void limit_by_diffusion(const Scene& scene, const Plan& plan, const FluidExtreme
   if (plan.has(PassId::kHeat)) limit.lower_to(conduction_step(scene, plan), "explicit conduction of heat");
 }
 
-// m/s between any two keys, of what is `reach` m from the pose's origin.
-double fastest_of(const std::vector<PoseKey>& keys, double reach) {
+// m/s between any two keys. `turned`: m that a rotation vector, world axes, moves what is farthest out.
+template <class Turned>
+double fastest_of(const std::vector<PoseKey>& keys, const Turned& turned) {
   double speed = 0.0;
   for (std::size_t k = 0; k + 1 < keys.size(); ++k) {
     const PoseKey &from = keys[k], &to = keys[k + 1];
     const double way = glm::distance(from.pose.position, to.pose.position) +
-                       reach * glm::length(rotation_between(from.pose.orientation, to.pose.orientation));
+                       turned(rotation_between(from.pose.orientation, to.pose.orientation), from.pose);
     if (to.time > from.time) speed = std::max(speed, way / (to.time - from.time));
   }
   return speed;
+}
+
+// A long screw that turns about its own axis is slow: the distance from the axis counts, of the mesh's box,
+// whose corners are few.
+double driven_body_speed(const TriangleMesh& mesh, const std::vector<PoseKey>& keys) {
+  double reach = 0.0;
+  glm::dvec3 low(0.0), high(0.0);
+  for (const glm::dvec3 p : mesh.positions) {
+    reach = std::max(reach, glm::length(p));
+    low = glm::min(low, p);
+    high = glm::max(high, p);
+  }
+  return fastest_of(keys, [&](const glm::dvec3& rotation, const Pose& pose) {
+    const glm::dvec3 turn = glm::conjugate(pose.orientation) * rotation;
+    double way = 0.0;
+    for (int i = 0; i < 8; ++i) {
+      const glm::dvec3 corner(i & 1 ? high.x : low.x, i & 2 ? high.y : low.y, i & 4 ? high.z : low.z);
+      way = std::max(way, glm::length(glm::cross(turn, corner)));
+    }
+    return std::min(way, reach * glm::length(rotation));
+  });
 }
 
 }  // namespace
@@ -177,14 +199,15 @@ double driven_speed(const Scene& scene) {
   for (const Body& body : scene.bodies) {
     if (body.motion == BodyMotion::kFree) speed = std::max(speed, glm::length(body.twist.linear));
   }
-  for (const Grip& grip : scene.grips)
-    speed = std::max(speed, fastest_of(grip.hand_motion, reach_of(scene, grip)));
+  for (const Grip& grip : scene.grips) {
+    const double reach = reach_of(scene, grip);
+    speed = std::max(speed, fastest_of(grip.hand_motion, [reach](const glm::dvec3& rotation, const Pose&) {
+                       return reach * glm::length(rotation);
+                     }));
+  }
   for (const Body& body : scene.bodies) {
     if (body.motion != BodyMotion::kDriven || body.mesh < 0) continue;
-    double reach = 0.0;
-    for (const glm::vec3& p : scene.meshes[static_cast<std::size_t>(body.mesh)].positions)
-      reach = std::max(reach, static_cast<double>(glm::length(p)));
-    speed = std::max(speed, fastest_of(body.keys, reach));
+    speed = std::max(speed, driven_body_speed(scene.meshes[static_cast<std::size_t>(body.mesh)], body.keys));
   }
   return std::min(speed, kFastestDriven);
 }

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "sim/bodies/skyline.h"
+#include "sim/step_limits.h"
 #include "tests/support/linkage.h"
 #include "tests/support/stirred_tank.h"
 
@@ -309,6 +310,21 @@ TEST(DrivenBody, StandsWhileASceneSettles) {
   EXPECT_EQ(state_of(world).bodies[0].pose.position, glm::dvec3(0.0));
   run_for(world, 0.1);
   EXPECT_NEAR(state_of(world).bodies[0].pose.position.x, 0.1, 1e-12);
+}
+
+TEST(DrivenBody, IsReckonedAsFastAsWhatIsFarthestFromItsAxis) {
+  const auto speed_about = [](const glm::dvec3& axis) {
+    Scene scene;
+    scene.meshes.emplace_back().positions = {{-0.02f, -0.5f, -0.02f}, {0.02f, 0.5f, 0.02f}};
+    Body& body = scene.bodies.emplace_back();
+    body.mesh = 0;
+    body.motion = BodyMotion::kDriven;
+    const glm::dquat lies = glm::angleAxis(1.1, glm::dvec3(1, 0, 0));
+    for (int k = 0; k < 3; ++k) body.keys.push_back({0.1 * k, {{}, lies * glm::angleAxis(0.2 * k, axis)}});
+    return driven_speed(scene);
+  };
+  EXPECT_NEAR(speed_about({0, 1, 0}), 2.0 * std::hypot(0.02, 0.02), 1e-6) << "a screw about its length";
+  EXPECT_NEAR(speed_about({0, 0, 1}), 2.0 * std::hypot(0.02, 0.5), 1e-6) << "end over end";
 }
 
 // The paddle of a tank, driven: what it does to the fluid it is told.
