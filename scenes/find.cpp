@@ -15,7 +15,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* kOrder[] = {"bucket", "spoon", "pour", "spin", "pool", "probe", "crepe", "mixer"};
+constexpr const char* kOrder[] = {"bucket", "spoon", "pour",  "spin",  "pool",
+                                  "probe",  "crepe", "mixer", "vessel"};
 
 /// The folder of the program, or of the library, that this code is in; empty where the system does not say.
 fs::path folder_of_this_code() {

@@ -17,6 +17,7 @@ constexpr Shipped kShipped[] = {
     {"pour", slosh::make::make_pour},     {"spin", slosh::make::make_spin},
     {"pool", slosh::make::make_pool},     {"probe", slosh::make::make_probe},
     {"crepe", slosh::make::make_crepe},   {"mixer", slosh::make::make_mixer},
+    {"vessel", slosh::make::make_vessel},
 };
 
 }  // namespace

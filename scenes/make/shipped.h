@@ -19,6 +19,7 @@ SceneWriter make_pool();    ///< paper, section 6.2
 SceneWriter make_probe();   ///< paper, section 3
 SceneWriter make_crepe();   ///< paper, section 6.5
 SceneWriter make_mixer();   ///< paper's discussion: a mixer in a soup
+SceneWriter make_vessel();  ///< paper's discussion: a probe in a vessel
 
 /// A wooden slab, its top at y = 0: a fixed body, or only looked at.
 void add_table(SceneWriter& writer, double width, double depth, bool solid = true);

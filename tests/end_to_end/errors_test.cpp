@@ -240,13 +240,13 @@ TEST(Verbs, PlayTellsApartWhatSettlingLost) {
 TEST(Verbs, ScenesListsEveryShippedScene) {
   const Outcome outcome = test::slosh({"scenes"});
   EXPECT_EQ(outcome.code, 0) << outcome.err;
-  for (const char* name : {"bucket", "spoon", "pour", "spin", "pool", "probe", "crepe", "mixer"}) {
+  for (const char* name : {"bucket", "spoon", "pour", "spin", "pool", "probe", "crepe", "mixer", "vessel"}) {
     EXPECT_TRUE(contains(outcome.out, name)) << name;
   }
 }
 
 TEST(Verbs, EveryShippedSceneChecksAndPlans) {
-  for (const char* name : {"bucket", "spoon", "pour", "spin", "pool", "probe", "crepe", "mixer"}) {
+  for (const char* name : {"bucket", "spoon", "pour", "spin", "pool", "probe", "crepe", "mixer", "vessel"}) {
     const Outcome check = test::slosh({"check", name});
     EXPECT_EQ(check.code, 0) << check.err;
     EXPECT_EQ(check.out.rfind("ok", 0), 0u) << check.out;

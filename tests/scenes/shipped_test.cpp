@@ -115,14 +115,15 @@ TEST_P(ShippedScene, GoesThroughGlbUnchanged) {
   // The same maker writes both containers; the reader must not tell them apart.
   const std::string name = GetParam();
   const TempFolder folder;
-  make::SceneWriter writer = name == "bucket"  ? make::make_bucket()
-                             : name == "spoon" ? make::make_spoon()
-                             : name == "pour"  ? make::make_pour()
-                             : name == "spin"  ? make::make_spin()
-                             : name == "pool"  ? make::make_pool()
-                             : name == "crepe" ? make::make_crepe()
-                             : name == "mixer" ? make::make_mixer()
-                                               : make::make_probe();
+  make::SceneWriter writer = name == "bucket"   ? make::make_bucket()
+                             : name == "spoon"  ? make::make_spoon()
+                             : name == "pour"   ? make::make_pour()
+                             : name == "spin"   ? make::make_spin()
+                             : name == "pool"   ? make::make_pool()
+                             : name == "crepe"  ? make::make_crepe()
+                             : name == "mixer"  ? make::make_mixer()
+                             : name == "vessel" ? make::make_vessel()
+                                                : make::make_probe();
   ASSERT_TRUE(writer.write(folder / (name + ".glb")));
   const auto binary = load_scene(folder / (name + ".glb"));
   ASSERT_TRUE(binary) << binary.error().text();
@@ -140,13 +141,14 @@ TEST_P(ShippedScene, GoesThroughGlbUnchanged) {
 
 INSTANTIATE_TEST_SUITE_P(All, ShippedScene,
                          ::testing::Values("bucket", "spoon", "pour", "spin", "pool", "probe", "crepe",
-                                           "mixer"),
+                                           "mixer", "vessel"),
                          [](const auto& param) { return std::string(param.param); });
 
 TEST(ShippedScenes, AreListedInOrderWithTitles) {
   const std::vector<SceneEntry> entries = shipped_scenes();
-  ASSERT_EQ(entries.size(), 8u);
-  const char* const names[] = {"bucket", "spoon", "pour", "spin", "pool", "probe", "crepe", "mixer"};
+  ASSERT_EQ(entries.size(), 9u);
+  const char* const names[] = {"bucket", "spoon", "pour",  "spin",  "pool",
+                               "probe",  "crepe", "mixer", "vessel"};
   for (std::size_t i = 0; i < entries.size(); ++i) {
     EXPECT_EQ(entries[i].name, names[i]);
     EXPECT_GT(entries[i].title.size(), 10u);

@@ -72,7 +72,7 @@ TEST_P(GoldenPlan, OfTheIncompressibleModelIsAsCommitted) {
 
 INSTANTIATE_TEST_SUITE_P(Shipped, GoldenPlan,
                          ::testing::Values("bucket", "spoon", "pour", "spin", "pool", "probe", "crepe",
-                                           "mixer"));
+                                           "mixer", "vessel"));
 
 // sim/PASSES.md as the table of passes has it; SLOSH_UPDATE_GOLDEN=1 writes it.
 TEST(Passes, ThePageIsTheTable) {

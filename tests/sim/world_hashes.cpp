@@ -109,7 +109,7 @@ int main(int argc, char** argv) {
     for (int i = 2; i < argc; ++i) same &= slosh::print_shipped(argv[i], steps);
     return same ? 0 : 1;
   }
-  for (const char* name : {"bucket", "spoon", "pour", "spin", "pool", "probe", "crepe", "mixer"})
+  for (const char* name : {"bucket", "spoon", "pour", "spin", "pool", "probe", "crepe", "mixer", "vessel"})
     same &= slosh::print_shipped(name, steps);
   same &= slosh::print_small(steps);
   return same ? 0 : 1;

@@ -12,7 +12,7 @@ import slosh
 class Reading(unittest.TestCase):
     def test_the_shipped_ones_are_there(self):
         names = [name for name, _ in slosh.scenes()]
-        self.assertEqual(names, ["bucket", "spoon", "pour", "spin", "pool", "probe", "crepe", "mixer"])
+        self.assertEqual(names, ["bucket", "spoon", "pour", "spin", "pool", "probe", "crepe", "mixer", "vessel"])
         for name, title in slosh.scenes():
             scene = slosh.load_scene(name)
             self.assertEqual(scene.title, title)

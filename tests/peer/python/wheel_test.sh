@@ -32,7 +32,7 @@ version, env = sys.argv[1:]
 assert slosh.__version__ == version == importlib.metadata.version("slosh")
 assert os.path.realpath(slosh.__file__).startswith(os.path.realpath(env)), slosh.__file__
 assert slosh.load_scene("bucket").source.startswith(os.path.realpath(env)), "the package's own scenes"
-assert len(slosh.scenes()) == 8
+assert len(slosh.scenes()) == 9
 assert os.path.exists(os.path.join(os.path.dirname(slosh.__file__), "py.typed"))
 files = importlib.metadata.files("slosh")
 assert files is not None and all(file.locate().exists() for file in files)
