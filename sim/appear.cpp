@@ -13,7 +13,7 @@ namespace {
 // half a spacing off) and to other fluid (a lattice's is a spacing off).
 constexpr float kTouches = 0.5f;
 constexpr float kOffWalls = 0.4f;
-constexpr float kOffFluid = 0.9f;
+constexpr float kOffFluid = 1.0f;
 
 bool is_in_way(const Pose& pose, std::span<const glm::vec3> points, const Pose& of_field,
                const DistanceFieldView& field, float deeper) {

@@ -326,6 +326,9 @@ TEST(FixedJoint, AWorldSavedBeforeJointsBrokeIsRead) {
   const auto at = std::find_end(saved.begin(), saved.end(), added.begin(), added.end());
   ASSERT_NE(at, saved.end());
   saved.erase(at, at + static_cast<std::ptrdiff_t>(added.size()));
+  // The number of waiting particles behind what does not move, tick, status, gravity, age and the broken.
+  constexpr std::ptrdiff_t kWaiting = 2 * 4 + 10 * 8 + 8 + 4 + 8 + 8 + 8;
+  saved.erase(saved.begin() + kWaiting, saved.begin() + kWaiting + 8);
   saved[sizeof(std::uint32_t)] = 7;
   World other = link.world();
   const Result<bool> restored = other.restore(saved);

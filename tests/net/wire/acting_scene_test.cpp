@@ -98,11 +98,15 @@ TEST(ActingScene, WhatComesAndGoesTravelsToo) {
   };
   scene.task[0].then[1].other = 5;
   refused("is not in the scene");
-  scene.task[0].then = {{TaskActKind::kAppears, 0, -1}};
-  scene.bodies[0].motion = BodyMotion::kFixed;
+  Body shelf = scene.bodies[1];
+  shelf.motion = BodyMotion::kFixed;
+  shelf.keys.clear();
+  shelf.starts_away = false;
+  scene.bodies.push_back(shelf);
+  scene.task[0].then = {{TaskActKind::kAppears, bodies, -1}};
   refused("stays there for good");
   scene.task[0].then.clear();
-  scene.bodies[0].starts_away = true;
+  scene.bodies.back().starts_away = true;
   refused("is of a fixed body");
 }
 

@@ -187,12 +187,12 @@ Stress long_step(const Setting& setting, Cost& cost) {
 Stress filled_anew(const Setting& setting, Cost& cost) {
   SceneBuilder b;
   b.add_fluid(1000.0, 0.05);
-  b.add_fixed("tank", tank_at_floor({0.16, 0.2, 0.16}, 0.03));
+  b.add_fixed("tank", tank_at_floor({0.16, 1.0, 0.16}, 0.03));
   b.add_volume(make::box({-0.08, 0.0, -0.08}, {0.08, 0.05, 0.08}));
   b.add_volume(make::box({-0.03, 0.1, -0.03}, {0.03, 0.16, 0.03}));
   b.scene.fluid_volumes.back().starts_away = true;
   b.scene.fluid_volumes.back().fillings = 3;
-  b.set_domain({-0.4, -0.3, -0.4}, {0.4, 0.6, 0.4});
+  b.set_domain({-0.4, -0.3, -0.4}, {0.4, 3.0, 0.4});
   Trial t(b.scene, setting, cost);
   Watch watch(t, b.scene);
   const std::size_t filling = thing_count(b.scene) - 1;
