@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "sim/fluid_measures.h"
 
@@ -146,11 +147,18 @@ void GuidedTask::look(const World& world) {
   was_met_ = false;
 }
 
+void GuidedTask::carry_on(const std::vector<double>& took) {
+  carried_.clear();
+  for (std::size_t i = 0; i < std::min(took.size(), scene_.task.size()); ++i)
+    carried_.push_back({took[i], scene_.task[i].within > 0.0 && took[i] > scene_.task[i].within});
+}
+
 bool GuidedTask::follow(const World& world) {
   const double time = world.time();
   if (!begun_ || time < state_.now - kRounding) {
     state_ = {};
     state_.begun = state_.now = next_ = time;
+    state_.done = std::exchange(carried_, {});
     begun_ = true;
     was_met_ = false;
   }

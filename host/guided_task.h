@@ -38,6 +38,8 @@ class GuidedTask {
   /// After each step, and before the first; true where the state is another then. A world whose time went
   /// back begins the task anew.
   bool follow(const World& world);
+  /// Before the first look: these steps are done, in so many s each; the next begins then.
+  void carry_on(const std::vector<double>& took);
   const TaskState& state() const { return state_; }
   /// kg of fluid that is in no region of the scene, or has left the world (by its mean particle's mass).
   double spilled(const World& world);
@@ -57,6 +59,7 @@ class GuidedTask {
   const Measurement* fluid_ = nullptr;       // where the step's goal asks for it
   std::vector<float> temperatures_, cures_;  // likewise, one a particle
   double next_ = 0.0;
+  std::vector<TaskState::Done> carried_;  // steps that were done before the first look
   bool begun_ = false;
   bool was_met_ = false;  // at the look before
   TaskState state_;

@@ -37,6 +37,7 @@ struct HostState {
   double gravity_scale = 1.0;
   std::vector<double> viscosities;     ///< Pa·s, one a fluid
   std::vector<double> grip_stiffness;  ///< times the scene's, one a grip
+  std::vector<double> task_done{};     ///< s, of the guided task's steps that are done: of a checkpoint alone
 };
 
 /// Does to a world what a command asks, but for pause, continue and reset, which are its host's: nothing.

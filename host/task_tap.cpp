@@ -1,5 +1,6 @@
 #include "host/task_tap.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "sim/math/format.h"
@@ -19,6 +20,18 @@ std::string measured_text(const TaskState& state, const Scene& scene) {
 constexpr double kAskEvery = 0.5;  // simulated s, where something has to wait
 
 }  // namespace
+
+void TaskTap::carry_on(const std::vector<double>& took) {
+  task_.carry_on(took);
+  steps_acted_ = std::min(took.size(), scene_.task.size());
+}
+
+std::vector<double> TaskTap::took() const {
+  const std::lock_guard lock(mutex_);
+  std::vector<double> all;
+  for (const TaskState::Done& step : state_.done) all.push_back(step.took);
+  return all;
+}
 
 void TaskTap::follow(const World& world) {
   if (!task_.follow(world) && open_.empty()) return;

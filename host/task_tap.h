@@ -26,8 +26,12 @@ class TaskTap final : public HostTap {
   void after_change(const World& world, const HostCommand&, const HostState&) override { follow(world); }
   void on_end(const World& world) override { spilled_ = task_.spilled(world); }
 
+  /// Before the run, of a world that carries on: GuidedTask::carry_on. What these steps brought is in the
+  /// world.
+  void carry_on(const std::vector<double>& took);
   /// Any thread.
   TaskLines lines() const;
+  std::vector<double> took() const;  ///< s, of the steps that are done
   /// The steps that are done, in their order.
   std::vector<TaskState::Done> done() const;
   double spilled() const { return spilled_; }  ///< kg, as GuidedTask::spilled at the end of the run; after it

@@ -112,6 +112,48 @@ Result<bool> World::Impl::bring_body(std::size_t body) {
   return true;
 }
 
+/// Where a filling finds neither bodies nor one of `others`.
+std::vector<glm::vec3> World::Impl::free_places(const FillingIds& ids, const Pose& to_now,
+                                                const std::vector<glm::vec3>& others) const {
+  const float spacing = static_cast<float>(plan().spacing);
+  const PointGrid around(others, kOffFluid * spacing);
+  std::vector<glm::vec3> places;
+  for (std::uint32_t i = 0; i < ids.count; ++i) {
+    const glm::vec3 at(transform_point(to_now, glm::dvec3(filling_places[ids.first + i])));
+    bool free = constants.grid.contains(at.x, at.y, at.z);
+    around.each_near(at, [&](std::uint32_t other) {
+      free = free && glm::distance(others[other], at) >= kOffFluid * spacing;
+    });
+    for (std::size_t b = 0; b < scene.bodies.size() && free; ++b) {
+      const RigidBody& body = bodies.bodies()[b];
+      const DistanceFieldView field = bodies.shapes().field(static_cast<int>(b));
+      if (body.gone || field.size.x == 0) continue;
+      const glm::vec3 in_body(transform_point(inverse(body.mesh_pose()), glm::dvec3(at)));
+      free = sample_distance(field, in_body).distance >= kOffWalls * spacing;
+    }
+    if (free) places.push_back(at);
+  }
+  return places;
+}
+
+/// As at the start of a run.
+void World::Impl::add_particle(std::uint32_t id, const glm::vec3& at, const glm::vec3& velocity,
+                               ParticleState& particles) const {
+  const std::size_t i = particles.size();
+  particles.resize(i + 1);
+  particles.x[i] = at.x, particles.y[i] = at.y, particles.z[i] = at.z;
+  particles.vx[i] = velocity.x, particles.vy[i] = velocity.y, particles.vz[i] = velocity.z;
+  particles.volume[i] = constants.rest_volume;
+  particles.id[i] = id;
+  particles.key[i] = constants.grid.cell_of(at.x, at.y, at.z);
+  if (constants.heat.kinds.empty()) return;
+  const std::uint8_t kind = fluid_of[id];
+  const HeatKind& heat = constants.heat.kinds[kind];
+  particles.temperature[i] = heat.temperature;
+  particles.cure[i] = heat.cure;
+  particles.thickness[i] = thickness_of(heat, constants.kinds[kind].viscosity, heat.temperature, heat.cure);
+}
+
 Result<bool> World::Impl::fill_volume(std::size_t volume) {
   const FluidVolume& filled = scene.fluid_volumes[volume];
   const std::string where = "'" + filled.name + "'";
@@ -132,25 +174,7 @@ Result<bool> World::Impl::fill_volume(std::size_t volume) {
   std::vector<char> there(fluid_count, 0);
   for (std::size_t i = 0; i < particles.size(); ++i)
     if (particles.id[i] < fluid_count) there[particles.id[i]] = 1;
-  const std::vector<glm::vec3> others = places_of(particles);
-  const float spacing = static_cast<float>(plan().spacing);
-  const PointGrid around(others, kOffFluid * spacing);
-  std::vector<glm::vec3> places;
-  for (std::uint32_t i = 0; i < ids.count; ++i) {
-    const glm::vec3 at(transform_point(to_now, glm::dvec3(filling_places[ids.first + i])));
-    bool free = constants.grid.contains(at.x, at.y, at.z);
-    around.each_near(at, [&](std::uint32_t other) {
-      free = free && glm::distance(others[other], at) >= kOffFluid * spacing;
-    });
-    for (std::size_t b = 0; b < scene.bodies.size() && free; ++b) {
-      const RigidBody& body = bodies.bodies()[b];
-      const DistanceFieldView field = bodies.shapes().field(static_cast<int>(b));
-      free = body.gone || field.size.x == 0 ||
-             sample_distance(field, glm::vec3(transform_point(inverse(body.mesh_pose()), glm::dvec3(at))))
-                     .distance >= kOffWalls * spacing;
-    }
-    if (free) places.push_back(at);
-  }
+  const std::vector<glm::vec3> places = free_places(ids, to_now, places_of(particles));
   if (places.empty())
     return Error{where, "has no room: bodies or fluid are everywhere in its place", "Clear the place first"};
   std::vector<std::uint32_t> coming;
@@ -162,28 +186,11 @@ Result<bool> World::Impl::fill_volume(std::size_t volume) {
         where,
         format("needs %zu particles to be filled, and %zu are left of it", places.size(), coming.size()),
         "Take some away first, or give it more fillings in the scene"};
-  std::size_t at = particles.size();
-  particles.resize(at + coming.size());
-  for (std::size_t i = 0; i < coming.size(); ++i, ++at) {
-    const std::uint32_t id = coming[i];
-    const glm::vec3& x = places[i];
-    const std::uint8_t kind = fluid_of[id];
-    glm::dvec3 v = to_now.orientation * filled.velocity;
+  for (std::size_t i = 0; i < coming.size(); ++i) {
+    glm::dvec3 velocity = to_now.orientation * filled.velocity;
     if (filled.body >= 0)
-      v += bodies.bodies()[static_cast<std::size_t>(filled.body)].velocity_at(glm::dvec3(x));
-    particles.x[at] = x.x, particles.y[at] = x.y, particles.z[at] = x.z;
-    particles.vx[at] = static_cast<float>(v.x);
-    particles.vy[at] = static_cast<float>(v.y);
-    particles.vz[at] = static_cast<float>(v.z);
-    particles.volume[at] = constants.rest_volume;
-    particles.id[at] = id;
-    particles.key[at] = constants.grid.cell_of(x.x, x.y, x.z);
-    if (constants.heat.kinds.empty()) continue;
-    const HeatKind& heat = constants.heat.kinds[kind];
-    particles.temperature[at] = heat.temperature;
-    particles.cure[at] = heat.cure;
-    particles.thickness[at] =
-        thickness_of(heat, constants.kinds[kind].viscosity, heat.temperature, heat.cure);
+      velocity += bodies.bodies()[static_cast<std::size_t>(filled.body)].velocity_at(glm::dvec3(places[i]));
+    add_particle(coming[i], places[i], glm::vec3(velocity), particles);
   }
   waiting -= static_cast<std::int64_t>(coming.size());
   put(particles, walls, coming);

@@ -47,6 +47,10 @@ struct World::Impl {
   Result<bool> bring_body(std::size_t body);
   Result<bool> fill_volume(std::size_t volume);
   Result<bool> empty_volume(std::size_t volume, int region);
+  std::vector<glm::vec3> free_places(const FillingIds& ids, const Pose& to_now,
+                                     const std::vector<glm::vec3>& others) const;
+  void add_particle(std::uint32_t id, const glm::vec3& at, const glm::vec3& velocity,
+                    ParticleState& particles) const;
   /// The engine goes on with these particles, of which `changed` (ids, rising) came or went.
   void put(const ParticleState& particles, const ImpulseSums& walls,
            const std::vector<std::uint32_t>& changed);

@@ -101,6 +101,7 @@ Result<HostedWorld> carry_on(const HostVerbOptions& options, Progress& progress)
   p.plan = rebuilt.value().world.plan();
   hosted.world = std::move(rebuilt.value().world);
   hosted.state = state_of(*hosted.world, p.scene.fluids.size(), kept.state.paused, kept.state.run);
+  hosted.state.task_done = std::move(kept.state.task_done);
   progress.note(format("carries on at %.3f s", kept.time));
   hosted.waits = kept.state.paused && kept.tick == 0 && kept.state.run == 0 && options.wait > 0;
   hosted.start = std::move(kept.start);

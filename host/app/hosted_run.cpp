@@ -61,6 +61,7 @@ Result<std::unique_ptr<HostedRun>> HostedRun::create(HostedWorld& hosted, const 
     s.task_tap_ = std::make_unique<TaskTap>(
         scene, hosted.prepared.sampled,
         [&s](const HostCommand& command, HostAnswer answer) { s.host_->post(command, std::move(answer)); });
+  if (s.task_tap_) s.task_tap_->carry_on(hosted.state.task_done);
   const Result<bool> network = s.open_network(supervision);
   if (!network) return network.error();
   s.make_links();
@@ -203,6 +204,7 @@ Result<bool> HostedRun::open_files() {
     options.version = SLOSH_VERSION;
     options.place = place_;
     options.interval = options_.checkpoint_seconds;
+    if (task_tap_) options.task_done = [tap = task_tap_.get()] { return tap->took(); };
     options.run = server_->world_number();
     // The first file already has everything that a newcomer needs: this may be all that there ever is.
     server_->save_state();

@@ -14,8 +14,10 @@ namespace slosh::keep {
 namespace {
 
 constexpr char kMagic[8] = {'S', 'L', 'O', 'S', 'H', 'C', 'P', '\n'};
-// 1 had the secrets in it.
-constexpr std::uint32_t kVersion = 2;
+// 1 had the secrets in it; 2, which is read as well, lacks task_done.
+constexpr std::uint32_t kVersion = 3;
+constexpr std::uint32_t kBeforeTask = 2;
+constexpr double kLongestStep = 1e9;  // s
 constexpr std::size_t kMaxAddresses = 64;
 constexpr std::size_t kLongestAddress = 256;
 
@@ -52,6 +54,9 @@ void visit(V& v, FileHead& m) {
   v.text("listen", m.place.listen, kLongestAddress);
   v.list("addresses", m.place.addresses, kMaxAddresses,
          [](auto& each, std::string& address) { each.text("address", address, kLongestAddress); });
+  if (m.version.version > kBeforeTask)
+    v.list("task_done", m.state.task_done, kMaxTaskSteps,
+           [](auto& each, double& took) { each.real64("took", took, 0.0, kLongestStep); });
 }
 
 std::uint32_t version_of(ByteView head) {
@@ -154,6 +159,7 @@ void CheckpointWriter::take_copy(const World& world) {
   changed_since_copy_ = false;
   const Result<bool> saved = world.save(copy.world);
   copy.state = state_;
+  if (options_.task_done) copy.state.task_done = options_.task_done();
   copy.tick = world.tick();
   copy.time = world.time();
   copy.stamp_ns = begin_ns;
@@ -276,9 +282,10 @@ Result<Checkpoint> read_checkpoint_file(std::FILE* file, const std::string& name
     if (chunk.type != part)
       return damaged(name, "part " + std::to_string(chunk.type) + " stands where part " +
                                std::to_string(part) + " should");
-    if (part == kHead && version_of(chunk.content) != kVersion)
+    const std::uint32_t version = part == kHead ? version_of(chunk.content) : kVersion;
+    if (version > kVersion || version < kBeforeTask)
       return Error{name,
-                   "is a checkpoint of format " + std::to_string(version_of(chunk.content)) +
+                   "is a checkpoint of format " + std::to_string(version) +
                        ", and this program reads format " + std::to_string(kVersion),
                    "Resume it with the version of slosh that wrote it; it is left as it is"};
     if (part == kScene) {

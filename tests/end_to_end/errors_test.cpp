@@ -64,7 +64,7 @@ TEST(Errors, SoAreTheWordsBehindAVerb) {
                {"report knows no 'errors'", "Did you mean error?", "slosh report --help"});
   expect_error({"links", "nwe", "Zoe"}, 2, {"links knows no 'nwe'", "Did you mean new?"});
   expect_error({"devices", "tset"}, 2, {"devices knows no 'tset'", "Did you mean test?"});
-  expect_error({"report", "figure", "12"}, 2, {"12", "slosh report figure --help"});
+  expect_error({"report", "figure", "14"}, 2, {"14", "slosh report figure --help"});
   expect_error({"report", "error", "--spcing", "0.01"}, 2,
                {"Did you mean --spacing?", "slosh report error --help"});
   expect_error({"report"}, 2, {"slosh report --help"});

@@ -2,6 +2,8 @@
 #include <gtest/gtest.h>
 
 #include <cstdlib>
+#include <filesystem>
+#include <fstream>
 #include <set>
 #include <sstream>
 
@@ -227,6 +229,25 @@ TEST(Report, AFigureOfThePaperIsDrawnAndJudgedByThePapersWords) {
   EXPECT_EQ(test::slosh({"report", "figure", "9", "--out", "nine"}).code, 1)
       << "a figure that is there is not lost";
   EXPECT_EQ(test::slosh({"report", "figure", "7"}).code, 2);
+}
+
+TEST(Report, OfATaskDrawsItsRuns) {
+  test::empty_folder();
+  std::filesystem::create_directories(test::test_folder());
+  const std::filesystem::path table = test::test_folder() / "crepe.csv";
+  std::ofstream(table)
+      << "date,scene,steps,done,late,time_s,spilled_g,peak_n,mean_n,spacing_mm,step_s,measured\n"
+         "2026-11-28 10:00:00,crepe,2,2,0,30.5,12,8,3,9,10.5 20,\n"
+         "2026-11-29 10:00:00,pour,1,1,0,9,1,8,3,9,9,\n"
+         "2026-11-30 10:00:00,crepe,2,1,0,8,3,7,2.5,9,8,fluid 0.2 kg\n";
+  const Outcome drawn = test::slosh({"report", "task", "crepe.csv"});
+  ASSERT_EQ(drawn.code, 0) << drawn.err;
+  EXPECT_NE(drawn.out.find("crepe: 2 runs"), std::string::npos) << drawn.out;
+  EXPECT_NE(drawn.out.find("1 of 2"), std::string::npos) << drawn.out;
+  EXPECT_GT(test::read_text(test::test_folder() / "crepe.png").size(), 10000u);
+  const Outcome none = test::slosh({"report", "task", "crepe.csv", "--scene", "spin"});
+  EXPECT_EQ(none.code, 1);
+  EXPECT_NE(none.err.find("It has runs of: crepe, pour"), std::string::npos) << none.err;
 }
 
 }  // namespace

@@ -40,7 +40,7 @@ Bytes server_state_of(const path& file) {
 constexpr long kHead = 8;  // bytes before the first chunk
 
 TEST(Checkpoint, ResumedIsTheRunThatWasNeverStopped) {
-  const CheckpointOptions options = checkpoint_options(fresh_folder());
+  CheckpointOptions options = checkpoint_options(fresh_folder());
   Rig rig(until(0.3));
   std::vector<std::vector<HandleInput>> inputs;
   struct Inputs : HostTap {
@@ -51,6 +51,7 @@ TEST(Checkpoint, ResumedIsTheRunThatWasNeverStopped) {
     std::vector<std::vector<HandleInput>>& all;
   } tap(inputs);
   rig.host.add_tap(tap);
+  options.task_done = [] { return std::vector<double>{1.5, 2.25}; };
   auto writer = checkpoint(rig, options);
   writer->set_server_state({1, 2, 3});
   // The copy in mid-run is kept aside, as a crash at that moment would leave it.
@@ -72,6 +73,7 @@ TEST(Checkpoint, ResumedIsTheRunThatWasNeverStopped) {
   EXPECT_EQ(c.note, "");
   EXPECT_EQ(c.version, "0.0.test");
   EXPECT_EQ(server_state_of(options.file), (Bytes{1, 2, 3}));
+  EXPECT_EQ(c.state.task_done, (std::vector<double>{1.5, 2.25}));
   EXPECT_EQ(c.start, rig.host.start_state());
   EXPECT_GE(c.tick, 20u);
   Result<RebuiltWorld> rebuilt = rebuild_world(c.scene, c.spacing, c.world, WorldOptions{1, Backend::kCpu});
@@ -256,17 +258,26 @@ TEST(Checkpoint, OfAnEarlierFormatIsNamedAndSecretsThatAreDamagedFallBack) {
   ASSERT_TRUE(missing);
   EXPECT_FALSE(missing.value().has_value());
 
-  Bytes old;
-  for (Chunk chunk : chunks_of(options.file, kHead)) {
-    if (chunk.type == 3) chunk.content.front() = 1;  // the head begins with the format
-    append_chunk(chunk.type, chunk.content, old);
-  }
-  const Bytes now = read_all(options.file);
-  old.insert(old.begin(), now.begin(), now.begin() + 8);
-  const MemoryFile file(old);
-  const Result<Checkpoint> read = read_checkpoint_file(file.get(), "old");
+  const auto read_as = [&](std::uint8_t format) {
+    Bytes old;
+    for (Chunk chunk : chunks_of(options.file, kHead)) {
+      if (chunk.type == 3) {
+        chunk.content.front() = format;  // the head begins with it
+        chunk.content.pop_back();        // and ends with the steps of a task that are done: none
+      }
+      append_chunk(chunk.type, chunk.content, old);
+    }
+    const Bytes now = read_all(options.file);
+    old.insert(old.begin(), now.begin(), now.begin() + 8);
+    const MemoryFile file(old);
+    return read_checkpoint_file(file.get(), "old");
+  };
+  const Result<Checkpoint> second = read_as(2);
+  ASSERT_TRUE(second) << second.error().text();
+  EXPECT_TRUE(second.value().state.task_done.empty());
+  const Result<Checkpoint> read = read_as(1);
   ASSERT_FALSE(read);
-  EXPECT_NE(read.error().text().find("format 1, and this program reads format 2"), std::string::npos)
+  EXPECT_NE(read.error().text().find("format 1, and this program reads format 3"), std::string::npos)
       << read.error().text();
 }
 

@@ -120,6 +120,34 @@ TEST(TaskActs, WhatIsNotThereNeedNotBeTakenAway) {
   EXPECT_FALSE(run.away(1));
 }
 
+// A host that died carries on with the world as it is, and at the step where it was.
+TEST(TaskActs, AWorldThatCarriesOnIsAtTheStepWhereItWas) {
+  Scene scene = ball_and_block();
+  scene.bodies[1].pose.position.x = 0.5;
+  scene.task = {when_faster(0.2, {{TaskActKind::kAppears, 1, -1}}), when_faster(5.0, {}),
+                when_faster(100.0, {})};
+  Followed run(scene);
+  run.until(0.3);
+  std::vector<std::uint8_t> saved;
+  ASSERT_TRUE(run.world.save(saved));
+  const std::vector<double> took = run.tap.took();
+  ASSERT_EQ(took.size(), 1u);
+  Followed again(scene);
+  ASSERT_TRUE(again.world.restore(saved));
+  TaskTap tap(again.scene, again.sampled,
+              [&](const HostCommand& command, const auto&) { again.asked.push_back(command); });
+  tap.carry_on(took);
+  tap.on_start(again.world, {});
+  EXPECT_EQ(tap.lines().title, "step 2 of 3");
+  while (again.world.time() < 0.6) {
+    again.world.step({});
+    tap.after_step(again.world);
+  }
+  EXPECT_EQ(tap.lines().title, "step 3 of 3");
+  EXPECT_EQ(tap.done()[0].took, took[0]);
+  EXPECT_TRUE(again.asked.empty()) << "what the first step brought is there";
+}
+
 TEST(TaskActs, ASetBackTaskDoesThemAnew) {
   Scene scene = ball_and_block();
   scene.bodies[1].pose.position.x = 0.5;
