@@ -18,6 +18,9 @@ constexpr double kSmallestReference = 1.0;  // N: below it noise would be drawn 
 
 // Pale blue, a third of it seen.
 const MeshLook kGhostLook{{0.35f, 0.7f, 1.0f}, 0.0f, 0.5f, 0.3f};
+constexpr double kGhostApart = 0.03;  // m from the tool, from where on it is shown like that
+constexpr double kGhostTurn = 0.1;    // m that a radian counts as
+constexpr float kGhostSeen = 0.02f;   // opacity
 
 MeshLook look_of(const Material& m) {
   MeshLook look{m.base_color, m.metallic, m.roughness, m.opacity};
@@ -191,9 +194,17 @@ void FrameBuilder::add_ghosts(const BodySnapshot& rigid, Frame& frame) {
   for (Ghost& ghost : ghosts_) {
     const Grip& grip = scene_.grips[ghost.grip];
     const auto body = static_cast<std::size_t>(grip.body);
-    if (body >= rigid.bodies.size() || rigid.bodies[body].away()) continue;
-    const Pose pose = compose(ghost.way.at(rigid.time).pose, inverse(grip.pose));
-    frame.meshes.push_back({ghost.mesh, model_matrix(pose), kGhostLook});
+    if (ghost.grip >= rigid.grips.size() || body >= rigid.bodies.size() || rigid.bodies[body].away())
+      continue;
+    const Pose handle = ghost.way.at(rigid.time).pose;
+    // Where hand and ghost are one there is nothing to show: both drawn would only colour the tool.
+    const Pose& held = rigid.grips[ghost.grip].pose;
+    const double apart = glm::distance(handle.position, held.position) +
+                         kGhostTurn * glm::length(rotation_between(held.orientation, handle.orientation));
+    MeshLook look = kGhostLook;
+    look.opacity *= static_cast<float>(std::min(1.0, apart / kGhostApart));
+    if (look.opacity < kGhostSeen) continue;
+    frame.meshes.push_back({ghost.mesh, model_matrix(compose(handle, inverse(grip.pose))), look});
   }
 }
 

@@ -16,7 +16,7 @@ constexpr double kDeviceHolds = 100.0;  // N·s/m, of the device
 std::vector<PoseKey> swinging(double seconds) {
   std::vector<PoseKey> keys;
   for (double t = 0.0; t <= seconds; t += 0.02)
-    keys.push_back({t, {{0.1 * std::sin(3.0 * t), 0.05 * std::cos(2.0 * t), 0.0}, {}}});
+    keys.push_back({t, {{0.1 * std::sin(3.0 * t), 0.05 * std::cos(2.0 * t), 0.0}, {1, 0, 0, 0}}});
   return keys;
 }
 
@@ -69,7 +69,7 @@ TEST(Guidance, BringsAHandNearerToTheWay) {
 }
 
 TEST(Guidance, DoesNotPushAHandThatRestsOrGoesAlong) {
-  const std::vector<PoseKey> still{{0.0, {{0.2, 0.0, 0.0}, {}}}};
+  const std::vector<PoseKey> still{{0.0, {{0.2, 0.0, 0.0}, {1, 0, 0, 0}}}};
   Guidance guide(still, kMaxGuiding);
   EXPECT_EQ(guide.force(0.0, glm::dvec3(0.0), glm::dvec3(0.0), kTickOfGuide, kDeviceHolds), glm::dvec3(0.0));
   const glm::dvec3 along =
@@ -86,7 +86,7 @@ TEST(Guidance, HoldsAgainstAGhostThatLeaps) {
   std::uniform_real_distribution<double> anywhere(-0.5, 0.5);
   std::vector<PoseKey> way;
   for (double t = 0.0; t <= 20.0; t += 0.01)
-    way.push_back({t, {{anywhere(random), anywhere(random), anywhere(random)}, {}}});
+    way.push_back({t, {{anywhere(random), anywhere(random), anywhere(random)}, {1, 0, 0, 0}}});
   Guidance guide(way, kMaxGuiding);
   Arm arm;
   double least = 0.0;

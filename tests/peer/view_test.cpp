@@ -4,10 +4,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "peer/view/hud/hud.h"
-#include "peer/view/hud/rates.h"
 #include "peer/view/frame_builder.h"
 #include "peer/view/held_rects.h"
+#include "peer/view/hud/hud.h"
+#include "peer/view/hud/rates.h"
 #include "peer/view/mouse_hand.h"
 #include "peer/view/orbit_camera.h"
 #include "peer/view/picture_scale.h"
@@ -63,6 +63,52 @@ TEST(HeldRects, AScriptsWholeWayIsKnownBeforeItBegins) {
   EXPECT_LT(right_now, 0.5f);
   // Where the script ends the body is at 0.3, as far right of the middle as it begins to the left.
   EXPECT_NEAR(right, 0.5 + 0.5 * clip(view, {0.35, 0.15, 0.05}).x, 1e-3);
+}
+
+/// Keeps nothing of what it is given.
+struct NoMeshes final : MeshSink {
+  MeshHandle add_mesh(std::span<const glm::vec3>, std::span<const glm::vec3>, std::span<const glm::uvec3>,
+                      std::span<const glm::vec2>) override {
+    return next++;
+  }
+  TextureHandle add_texture(const TextureImage&) override { return {}; }
+  MeshHandle next = 0;
+};
+
+TEST(Ghost, StandsWhereTheRecordedHandHadTheToolAndFadesWhereBothAreOne) {
+  Scene scene;
+  scene.meshes.resize(1);
+  scene.meshes[0].positions = {{0, 0, 0}, {0.1f, 0, 0}, {0, 0.1f, 0}};
+  scene.meshes[0].normals.assign(3, glm::vec3(0, 0, 1));
+  scene.meshes[0].triangles = {{0, 1, 2}};
+  scene.bodies.resize(1);
+  scene.bodies[0].mesh = 0;
+  scene.grips.resize(1);
+  scene.grips[0].body = 0;
+  scene.grips[0].pose.position = {0.05, 0.0, 0.0};
+  NoMeshes meshes;
+  FrameBuilder builder(scene, 0.01, meshes);
+  builder.show_ghost(
+      {{0, {{0.0, {{0.05, 0.0, 0.0}, {1, 0, 0, 0}}}, {2.0, {{0.05, 0.2, 0.0}, {1, 0, 0, 0}}}}, 0.0}});
+  Snapshot snapshot;
+  snapshot.rigid.bodies.resize(1);
+  snapshot.rigid.grips.resize(1);
+  snapshot.rigid.grips[0].pose.position = {0.05, 0.0, 0.0};
+  const auto ghosts = [&](double time) {
+    snapshot.rigid.time = time;
+    decltype(Frame::meshes) found;
+    for (const auto& each : builder.build(snapshot, 1.0).meshes)
+      if (each.look.opacity < 1.0f) found.push_back(each);
+    return found;
+  };
+  EXPECT_TRUE(ghosts(0.0).empty()) << "the hand is where it was";
+  const auto later = ghosts(2.0);
+  ASSERT_EQ(later.size(), 1u);
+  EXPECT_NEAR(later[0].model[3].x, 0.0f, 1e-6f) << "less the grip's place on the body";
+  EXPECT_NEAR(later[0].model[3].y, 0.2f, 1e-6f);
+  EXPECT_LT(ghosts(0.2).empty() ? 0.0f : ghosts(0.2)[0].look.opacity, later[0].look.opacity);
+  snapshot.rigid.bodies[0].pose.position = glm::dvec3(kAway);
+  EXPECT_TRUE(ghosts(2.0).empty()) << "the tool is away";
 }
 
 TEST(OrbitCamera, TurningKeepsTheDistanceAndTheTarget) {
