@@ -94,11 +94,13 @@ inline constexpr std::array kGoalKindNames{"mass",   "temperature", "set",  "spr
                                            "mixing", "level",       "tilt", "speed",  "distance",
                                            "force",  "all",         "any",  "not"};
 
+/// Whether an index names one of `count`.
+inline bool below(int index, std::size_t count) {
+  return index >= 0 && static_cast<std::size_t>(index) < count;
+}
+
 /// Whether what a goal names is in the scene.
 inline bool has_thing(const Scene& scene, const Goal& goal) {
-  const auto below = [](int index, std::size_t count) {
-    return index >= 0 && static_cast<std::size_t>(index) < count;
-  };
   if (of_region(goal.kind))
     return below(goal.thing, scene.regions.size()) &&
            (goal.other == -1 || below(goal.other, scene.fluids.size()));
@@ -204,9 +206,6 @@ inline constexpr std::array kTaskActKindNames{"appears", "takes_away", "hand_tak
 
 /// Whether what comes, goes or is taken may.
 inline bool can_act(const Scene& scene, const TaskAct& act) {
-  const auto below = [](int index, std::size_t count) {
-    return index >= 0 && static_cast<std::size_t>(index) < count;
-  };
   if (act.kind == TaskActKind::kHandTakes)
     return below(act.thing, scene.grips.size()) && below(act.other, scene.grips.size());
   if (!below(act.thing, thing_count(scene))) return false;
