@@ -26,12 +26,8 @@ std::string score_field(std::string text) {
   return as_spreadsheet_text(text);
 }
 
-bool read_number(const std::string& text, double& value) {
-  const auto [end, problem] = std::from_chars(text.data(), text.data() + text.size(), value);
-  return problem == std::errc() && end == text.data() + text.size();
-}
-
-bool read_count(const std::string& text, std::size_t& value) {
+template <class T>
+bool read_number(const std::string& text, T& value) {
   const auto [end, problem] = std::from_chars(text.data(), text.data() + text.size(), value);
   return problem == std::errc() && end == text.data() + text.size();
 }
@@ -45,8 +41,8 @@ bool read_row(const std::string& line, Score& score) {
   score.date = fields[0];
   score.scene = from_spreadsheet_text(fields[1]);
   double grams = 0.0, millimetres = 0.0;
-  const bool numbers = read_count(fields[2], score.steps) && read_count(fields[3], score.done) &&
-                       read_count(fields[4], score.late) && read_number(fields[5], score.time) &&
+  const bool numbers = read_number(fields[2], score.steps) && read_number(fields[3], score.done) &&
+                       read_number(fields[4], score.late) && read_number(fields[5], score.time) &&
                        read_number(fields[6], grams) && read_number(fields[7], score.peak_force) &&
                        read_number(fields[8], score.mean_force) && read_number(fields[9], millimetres);
   score.spilled = 1e-3 * grams;
