@@ -218,7 +218,17 @@ struct Body {
   std::vector<PoseKey> keys;  ///< of the mesh frame when driven, the first at 0 s; after the last it stands
   bool repeats = false;       ///< the keys begin again after the last, which is where the first is
   bool starts_away = false;   ///< it moves, and is not in the world before World::appear
+  int pieces{};               ///< 2–kMaxPieces: by cuts it may become so many bodies; 0 = nothing cuts it
+  int piece_of{-1};           ///< index into Scene::bodies: by a cut it comes off that one; −1 = no piece
+  double cut_n_m{};           ///< N/m, 0–10⁶: a blade moves on in it from this for each metre inside it
+  bool blade{};               ///< it cuts with its edge (sim/bodies/blades.h), which is along x of its mesh
+                              ///< at the lowest y, in the plane z = 0, towards −y
 };
+inline constexpr int kMaxPieces = 16;
+/// Whether cuts make anything of it: it may be cut, or comes off one that may.
+inline bool is_cut(const Body& body) {
+  return body.pieces > 1 || body.piece_of >= 0;
+}
 
 /// A mesh that is only looked at.
 struct Picture {

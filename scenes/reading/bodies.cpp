@@ -1,7 +1,9 @@
 // Bodies, probes, fluids and pictures.
+#include <algorithm>
 #include <cmath>
 
 #include "scenes/gltf/meshes.h"
+#include "scenes/mesh/convex.h"
 #include "scenes/mesh/united.h"
 #include "scenes/reading/reading.h"
 
@@ -16,6 +18,7 @@ constexpr double kProbeRadius = 0.005;
 constexpr double kProbeMass = 0.05;
 constexpr std::size_t kMaxBodies = 10'000;
 constexpr std::size_t kMaxPictures = 4096;  // as a network carries
+constexpr std::size_t kMaxCutTriangles = 2000;
 
 /// Symmetric positive definite, and no moment above the sum of the other two.
 bool is_inertia(const glm::dmat3& m) {
@@ -80,6 +83,37 @@ void read_mass(Extras& extras, const mesh::VolumeIntegrals& volume, Body& body) 
   }
 }
 
+void read_cutting(Extras& extras, Body& body) {
+  body.pieces = extras.integer("pieces", 0, 2, kMaxPieces);
+  body.cut_n_m = extras.number("cut_n_m", 0.0, Range{0.0, 1e6});
+  body.blade = extras.flag("blade", false);
+  if (body.pieces > 0 && body.motion != BodyMotion::kFree)
+    extras.fail("pieces", "is given to a body that is not free", "Give motion = \"free\", or leave it out");
+  if (body.pieces == 0 && extras.has("cut_n_m"))
+    extras.fail("cut_n_m", "is given to a body that cannot be cut", "Give pieces = 2, or leave it out");
+  if (body.blade && (body.motion == BodyMotion::kFixed || body.pieces > 0))
+    extras.fail("blade", "is given to a body that is fixed, or cut itself",
+                "Give motion = \"free\" or \"driven\", and no pieces");
+  for (const char* key : {"center_of_mass_m", "inertia_kg_m2"})
+    if (body.pieces > 0 && extras.has(key))
+      extras.fail(key, "is given to a body that may be cut",
+                  "Leave it out: it is of one density all through");
+}
+
+/// What is cut must stay convex in every part.
+Problem check_pieces(const Reading& reading, int node, const Body& body) {
+  if (body.pieces == 0) return std::nullopt;
+  const mesh::WeldedMesh welded = mesh::weld(reading.scene.meshes[body.mesh]);
+  if (welded.triangles.size() > kMaxCutTriangles)
+    return Error{reading.document.owner(node),
+                 "may be cut, and has " + std::to_string(welded.triangles.size()) + " triangles, more than " +
+                     std::to_string(kMaxCutTriangles),
+                 "In Blender: Decimate, or leave pieces out"};
+  if (mesh::is_convex(welded)) return std::nullopt;
+  return Error{reading.document.owner(node), "may be cut, and its mesh is not convex",
+               "In Blender: Mesh > Convex Hull, or leave pieces out"};
+}
+
 /// Parts that lie in each other are one solid, also where a hollow was meant.
 void note_overlap(Reading& reading, int node, const mesh::United& united) {
   if (united.overlap <= 0.0) return;
@@ -124,6 +158,7 @@ Problem read_body(Reading& reading, int node) {
   }
   read_mass(extras, volume, body);
   read_common(extras, body);
+  read_cutting(extras, body);
   read_wall_viscosity(extras, body);
   if (extras.has("temperature_c")) body.temperature = extras.number("temperature_c", 20.0, kTemperatures);
   body.twist.linear = extras.vector("velocity_m_s", glm::dvec3(0.0), Range{-1e3, 1e3});
@@ -140,13 +175,25 @@ Problem read_body(Reading& reading, int node) {
   } else if (body.motion == BodyMotion::kDriven) {
     if (Problem problem = read_keys(reading, node, body)) return problem;
   }
+  if (Problem problem = check_pieces(reading, node, body)) return problem;
   if (Problem problem = check_place(reading, node, body.mesh, body.pose)) return problem;
-  if (reading.scene.bodies.size() >= kMaxBodies) {
+  const int first = static_cast<int>(reading.scene.bodies.size());
+  if (reading.scene.bodies.size() + static_cast<std::size_t>(std::max(body.pieces, 1)) > kMaxBodies) {
     return Error{reading.document.owner(node), "more than " + std::to_string(kMaxBodies) + " bodies",
                  "Use fewer"};
   }
-  reading.body_of_node[node] = static_cast<int>(reading.scene.bodies.size());
-  reading.scene.bodies.push_back(std::move(body));
+  reading.body_of_node[node] = first;
+  reading.scene.bodies.push_back(body);
+  for (int number = 2; number <= body.pieces; ++number) {
+    Body piece = body;
+    piece.name += "~" + std::to_string(number);
+    piece.pieces = 0;
+    piece.piece_of = first;
+    piece.measured = false;
+    piece.twist = {};
+    piece.starts_away = true;
+    reading.scene.bodies.push_back(std::move(piece));
+  }
   return std::nullopt;
 }
 
