@@ -88,6 +88,11 @@ Result<bool> World::Impl::bring_body(std::size_t body) {
     return Error{"'" + as.name + "'", "stands for good: it is there", ""};
   if (!is_away(bodies.bodies()[body].mesh_pose())) return Error{"'" + as.name + "'", "is there already", ""};
   const int index = static_cast<int>(body);
+  if (as.piece_of >= 0)
+    return Error{"'" + as.name + "'",
+                 "comes only when '" + scene.bodies[static_cast<std::size_t>(as.piece_of)].name + "' is cut",
+                 ""};
+  if (bodies.cuts().has(index)) make_whole(body);
   if (as.motion == BodyMotion::kDriven)
     as.pose = bodies.driven().pose_of(index, static_cast<double>(tick) * plan().time_step);
   as.starts_away = false;

@@ -20,6 +20,16 @@
 
 namespace slosh {
 
+/// A body with another surface, because it was cut or made whole.
+struct ReshapedBody {
+  std::size_t body = 0;
+  std::size_t first = 0;                         ///< of its particles among ParticleStart::moving
+  std::span<const SurfaceParticle> particles{};  ///< as many as it had there
+  const DistanceField* clamp = nullptr;          ///< on the grid that it had
+  /// m, world: by how much its centre of mass went back, from where it had its impulses
+  glm::dvec3 recentred{0.0};
+};
+
 /// A sub-step is begin(), then run() for each pass of the world's schedule that is an engine's. A GPU is only
 /// told what to do: it is waited for in wrenches() and in the two solves alone.
 class ParticleEngine {
@@ -50,6 +60,9 @@ class ParticleEngine {
   virtual bool save(ParticleState& out, ImpulseSums& impulses) const = 0;
   /// Takes a checked state over; particles that it lacks are out of the world. Clears status().
   virtual void restore(const ParticleState& state, const ImpulseSums& impulses) = 0;
+
+  /// Between two sub-steps.
+  virtual void reshape(const ReshapedBody& as) = 0;
 
   /// With kBonds who is bound to whom, by id; else an empty table. False when the GPU failed.
   virtual bool save_bonds(BondTable& out) const = 0;

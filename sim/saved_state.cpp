@@ -12,7 +12,8 @@ namespace slosh {
 namespace {
 
 constexpr std::uint32_t kMagic = 0x54535753;  // "SWST"
-constexpr std::uint32_t kVersion = 8;
+constexpr std::uint32_t kVersion = 9;
+constexpr std::uint32_t kBeforeCuts = 8;     // without SavedState::planes, and read as well: nothing was cut
 constexpr std::uint32_t kBeforeWaiting = 7;  // without SavedState::waiting and joints that let go, and read
                                              // as well: none waited, all held
 constexpr std::uint32_t kBeforeJoints = 6;   // without SavedState::joints, and read as well: there were none
@@ -91,6 +92,62 @@ void joint_hold(S& s, J& joint) {
   }
   three(s, joint.rest.position);
   rotation(s, joint.rest.orientation);
+}
+
+template <class S, class P>
+void cut_plane(S& s, P& plane) {
+  three(s, plane.normal);
+  s.real(plane.offset);
+  if constexpr (S::kReads) {
+    if (s.ok() && !(std::abs(glm::length(plane.normal) - 1.0) < 1e-6))
+      s.fail("it holds the plane of a cut that is none");
+  }
+}
+
+template <class S, class I>
+void incision(S& s, I& i) {
+  s.raw(i.blade);
+  s.raw(i.body);
+  cut_plane(s, i.plane);
+  three(s, i.way);
+  s.real(i.front);
+  auto refused = static_cast<std::uint8_t>(i.refused);
+  s.raw(refused);
+  if constexpr (S::kReads) i.refused = refused != 0;
+}
+
+void write_cuts(StateSink& s, const SavedState& state) {
+  for (const std::vector<CutPlane>& planes : state.planes) {
+    s.raw(static_cast<std::uint8_t>(planes.size()));
+    for (const CutPlane& plane : planes) cut_plane(s, plane);
+  }
+  s.raw(static_cast<std::uint32_t>(state.incisions.size()));
+  for (const Incision& i : state.incisions) incision(s, i);
+}
+
+void read_cuts(StateSource& s, std::uint64_t bodies, SavedState& state) {
+  state.planes.assign(bodies, {});
+  for (std::vector<CutPlane>& planes : state.planes) {
+    std::uint8_t count = 0;
+    s.raw(count);
+    if (count > kMaxCutPlanes) s.fail("a body in it has more cut faces than there can be");
+    if (!s.ok()) return;
+    planes.resize(count);
+    for (CutPlane& plane : planes) cut_plane(s, plane);
+  }
+  std::uint32_t count = 0;
+  s.raw(count);
+  if (s.ok() && s.left() / (8 * sizeof(double)) < count) s.fail("it ends too early");
+  if (!s.ok()) return;
+  state.incisions.resize(count);
+  for (Incision& i : state.incisions) {
+    incision(s, i);
+    if (!s.ok()) return;
+    const auto is_body = [&](int b) { return b >= 0 && static_cast<std::uint64_t>(b) < bodies; };
+    if (!is_body(i.blade) || !is_body(i.body)) return s.fail("a blade in it is in no body of this world");
+    if (!(std::abs(glm::length(i.way) - 1.0) < 1e-6) || !(std::abs(glm::dot(i.way, i.plane.normal)) < 1e-6))
+      return s.fail("it holds the way of a blade that is none");
+  }
 }
 
 // Pairs of bodies that there are, in order: the solve looks them up.
@@ -267,6 +324,7 @@ void write_state(const StateFrame& frame, const RunConstants& constants, const S
     body_state(s, body);
     s.raw(static_cast<std::uint8_t>(body.gone));
   }
+  if (frame.cuts) write_cuts(s, state);
   for (const Wrench& w : state.wrenches) wrench(s, w);
   for (const GripState& grip : state.grips) grip_state(s, grip);
   for (const HandleInput& input : state.last_input) {
@@ -332,6 +390,7 @@ Result<bool> read_state(std::span<const std::uint8_t> bytes, const StateFrame& f
     read.gone = gone != 0;
     if (!body.is_fixed()) body = read;
   }
+  if (frame.cuts && version > kBeforeCuts) read_cuts(s, frame.bodies, state);
   state.wrenches.resize(frame.bodies);
   for (Wrench& w : state.wrenches) wrench(s, w);
   state.grips.resize(frame.grips);

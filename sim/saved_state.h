@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "sim/bodies/blades.h"
 #include "sim/bodies/contact_memory.h"
 #include "sim/bodies/hands.h"
 #include "sim/bodies/joints.h"
@@ -30,7 +31,8 @@ struct StateFrame {
   double time_step = 0.0;  ///< s
   double stiffness = 0.0;  ///< m²/s²
   std::uint64_t scene =
-      0;  ///< fingerprint of masses, grips, joints, keys, gravity, domain, fluids, materials
+      0;        ///< fingerprint of masses, grips, joints, keys, gravity, domain, fluids, materials
+  bool cuts{};  ///< some body may be cut
 };
 
 StateFrame state_frame(const Scene& scene, const Plan& plan, const ParticleStart& start);
@@ -41,17 +43,19 @@ struct SavedState {
   double gravity_scale = 1.0;
   std::int64_t waiting = 0;  ///< particles out of the world that are neither spilled nor lost
   double age = 0.0;          ///< s since the start, settling counted (passes/rest_density/rest_density.h)
-  std::vector<double> viscosities;      ///< Pa·s, one a fluid
-  std::vector<RigidBody> bodies;        ///< only what moves is read back
-  std::vector<Wrench> wrenches;         ///< by the fluid, one a body
-  std::vector<GripState> grips;         ///< handle and on_hand
-  std::vector<HandleInput> last_input;  ///< one a grip
-  Hands::Stiffness grip_stiffness;      ///< one a grip
-  std::vector<KeptImpulse> impulses;    ///< of contacts, pair by pair
-  std::vector<KeptJoint> joints;        ///< one a joint
-  std::vector<JointState> joint_means;  ///< one a joint: motor and reaction
-  ImpulseSums walls;                    ///< what bodies have still to be given (walls/clamp_impulse.h)
-  BondTable bonds;                      ///< kBonds; else empty
+  std::vector<double> viscosities;              ///< Pa·s, one a fluid
+  std::vector<RigidBody> bodies;                ///< only what moves is read back
+  std::vector<std::vector<CutPlane>> planes{};  ///< of bodies that may be cut, one a body; else empty
+  std::vector<Incision> incisions{};            ///< blades on their way
+  std::vector<Wrench> wrenches;                 ///< by the fluid, one a body
+  std::vector<GripState> grips;                 ///< handle and on_hand
+  std::vector<HandleInput> last_input;          ///< one a grip
+  Hands::Stiffness grip_stiffness;              ///< one a grip
+  std::vector<KeptImpulse> impulses;            ///< of contacts, pair by pair
+  std::vector<KeptJoint> joints;                ///< one a joint
+  std::vector<JointState> joint_means;          ///< one a joint: motor and reaction
+  ImpulseSums walls;        ///< what bodies have still to be given (walls/clamp_impulse.h)
+  BondTable bonds;          ///< kBonds; else empty
   ParticleState particles;  ///< in the order that the engine has them: sums over neighbours depend on it
 };
 

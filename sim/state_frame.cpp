@@ -47,6 +47,13 @@ StateFrame state_frame(const Scene& scene, const Plan& plan, const ParticleStart
         real(part);
     }
   }
+  bool cuts = false;
+  for (const Body& body : scene.bodies) {
+    cuts |= is_cut(body);
+    if (!is_cut(body) && !body.blade) continue;
+    for (const int number : {body.pieces, body.piece_of, body.blade ? 1 : 0}) print.add(number);
+    real(body.cut_n_m);
+  }
   for (const Joint& joint : scene.joints) {
     for (const int number : {static_cast<int>(joint.kind), joint.body, joint.other}) print.add(number);
     vector(joint.pose.position);
@@ -90,7 +97,7 @@ StateFrame state_frame(const Scene& scene, const Plan& plan, const ParticleStart
   return {start.fluid_count,   start.probes.size(), start.fixed.size() + start.moving.size(),
           scene.bodies.size(), scene.grips.size(),  scene.fluids.size(),
           scene.joints.size(), plan.spacing,        plan.time_step,
-          plan.stiffness,      print.value()};
+          plan.stiffness,      print.value(),       cuts};
 }
 
 }  // namespace slosh

@@ -41,6 +41,7 @@ void World::step(std::span<const HandleInput> handles) {
     w.run(w.sub_step(i));
   }
   if (w.plan().has(PassId::kJoints)) w.bodies.change_joints(w.plan().time_step);
+  if (w.bodies.blades().any()) w.cut_through();
   w.times.total = whole.lap();
   ++w.tick;
 }
@@ -207,6 +208,8 @@ Result<bool> World::save(std::vector<std::uint8_t>& out) const {
   state.waiting = w.waiting;
   for (const Fluid& fluid : w.scene.fluids) state.viscosities.push_back(fluid.dynamic_viscosity);
   state.bodies = w.bodies.bodies();
+  state.planes = w.bodies.cuts().all_planes();
+  state.incisions = w.bodies.blades().kept();
   state.wrenches = w.wrenches;
   state.grips = w.bodies.grips();
   state.last_input = w.bodies.last_inputs();
@@ -240,6 +243,9 @@ Result<bool> World::restore(std::span<const std::uint8_t> saved) {
     }
   }
 
+  Result<std::vector<World::Impl::Reshaping>> cut = w.shapes_of(state);
+  if (!cut) return cut.error();
+
   for (std::size_t f = 0; f < state.viscosities.size(); ++f)
     w.scene.fluids[f].dynamic_viscosity = state.viscosities[f];
   w.gravity_scale = state.gravity_scale;
@@ -249,6 +255,11 @@ Result<bool> World::restore(std::span<const std::uint8_t> saved) {
                    std::move(state.grip_stiffness), std::move(state.impulses));
   w.bodies.restore_joints(std::move(state.joints), std::move(state.joint_means));
   w.engine->restore(state.particles, state.walls);
+  for (const World::Impl::Reshaping& each : cut.value()) {
+    w.bodies.reshape(static_cast<int>(each.body), each.shape);
+    w.reshape(each.body, each.shape, each.particles, glm::dvec3(0.0));
+  }
+  w.bodies.restore(std::move(state.incisions));
   if (w.plan().has(PassId::kBonds)) w.engine->restore_bonds(state.bonds);
   std::fill(w.found.begin(), w.found.end(), Wrench{});
   std::fill(w.drag_matrices.begin(), w.drag_matrices.end(), Matrix6{});

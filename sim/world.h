@@ -10,6 +10,7 @@
 
 #include "scenes/scene.h"
 #include "sim/backend.h"
+#include "sim/math/cut_plane.h"
 #include "sim/math/dense.h"
 #include "sim/math/result.h"
 #include "sim/plan.h"
@@ -154,6 +155,16 @@ class World {
   /// (index into Scene::regions) those of a volume that are in it. Errors likewise: no such thing, or it is
   /// not there.
   Result<bool> take_away(std::size_t thing, int region = -1);
+
+  /// Cuts a body (Body::pieces) along a plane in its mesh frame. The part that grips and joints are on keeps
+  /// its number, without any the larger one; the other comes into the world as a body that was away, whose
+  /// number is returned. Both go on as the whole moved: mass, momentum and angular momentum stay to rounding.
+  /// Takes a few ms. Errors, with the world as it was: it cannot be cut, or is not there; no piece of it is
+  /// left; the plane misses it; a part would be thinner than particles are apart; grips and joints are on
+  /// both.
+  Result<std::size_t> cut(std::size_t body, const CutPlane& plane);
+  /// By which planes each body is bounded now, in its mesh frame; empty where no body may be cut.
+  std::vector<std::vector<CutPlane>> cut_planes() const;
 
   /// From the next step on. Errors: no such fluid in the world, or the time step would not be stable with it
   /// (then with the largest value that is). `pascal_seconds` >= 0.

@@ -34,6 +34,14 @@ std::optional<Error> World::Impl::start(const SampledScene& sampled) {
   if (!fillings.empty()) filling_places = sampled.fluid_positions;
   region_fields = sampled.region_fields;
   boundary_count = particles.fixed.size() + particles.moving.size();
+  if (bodies.cuts().any()) {
+    drags_from = drag_layer(scene, plan());
+    piece_slots.resize(scene.bodies.size());
+    for (std::size_t i = particles.moving.size(); i-- > 0;) {
+      Slots& slots = piece_slots[particles.moving[i].body];
+      slots = {i, slots.count + 1};
+    }
+  }
   Result<std::unique_ptr<ParticleEngine>> made =
       make_particle_engine(constants, particles, bodies.bodies(), options);
   if (!made) return made.error();

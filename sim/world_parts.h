@@ -45,6 +45,27 @@ struct World::Impl {
     return step.elapsed == 0.0 && tick % static_cast<std::uint64_t>(plan().heat_steps) == 0;
   }
   Result<bool> bring_body(std::size_t body);
+  Result<std::size_t> cut_body(std::size_t body, CutPlane plane);
+  /// At a step's end: bodies that blades have gone through.
+  void cut_through();
+  /// Which side of the plane keeps the body's number. Error: grips and joints are on both.
+  Result<CutPlane> side_that_stays(std::size_t body, const CutPlane& plane) const;
+  /// The particles of a piece, as many as there is room for. Error: they are more.
+  Result<std::vector<SurfaceParticle>> particles_of(std::size_t body, const PieceShape& shape) const;
+  /// The engine goes on with that surface of the body.
+  void reshape(std::size_t body, const PieceShape& shape, std::span<const SurfaceParticle> particles,
+               const glm::dvec3& recentred);
+  /// A body with the planes that a saved world has.
+  struct Reshaping {
+    std::size_t body = 0;
+    PieceShape shape;
+    std::vector<SurfaceParticle> particles;
+  };
+  /// Of those whose planes are others than now; their masses go into the state. Errors: planes or blades that
+  /// cannot be.
+  Result<std::vector<Reshaping>> shapes_of(SavedState& state) const;
+  /// A body that was cut is whole again.
+  void make_whole(std::size_t body);
   Result<bool> fill_volume(std::size_t volume);
   Result<bool> empty_volume(std::size_t volume, int region);
   std::vector<glm::vec3> free_places(const FillingIds& ids, const Pose& to_now,
@@ -74,8 +95,14 @@ struct World::Impl {
   std::size_t fluid_count = 0;              // without probes
   std::vector<std::uint8_t> fluid_of;       // index into scene.fluids, by id
   std::size_t boundary_count = 0;
-  std::vector<FillingIds> fillings;       // one a fluid volume, and where its particles come
-  std::vector<glm::vec3> filling_places;  // m, world, as the scene has its bodies; one an id
+  /// Of a body's particles among those that move: the first, and how many.
+  struct Slots {
+    std::size_t first = 0, count = 0;
+  };
+  DragLayer drags_from = DragLayer::kBehind;  // of the scene as it started
+  std::vector<Slots> piece_slots;             // one a body, where any may be cut
+  std::vector<FillingIds> fillings;           // one a fluid volume, and where its particles come
+  std::vector<glm::vec3> filling_places;      // m, world, as the scene has its bodies; one an id
   std::vector<DistanceField> region_fields;
   std::int64_t waiting = 0;  // particles out of the world, neither spilled nor lost
   std::uint32_t status = 0;  // of bodies and inputs; the engine has its own

@@ -19,6 +19,8 @@ BodySystem::BodySystem(const Scene& scene, const SampledScene& sampled)
       joints_(scene, bodies_),
       room_(scene, sampled),
       finder_(scene, sampled),
+      cuts_(scene, sampled),
+      blades_(scene, sampled.spacing),
       hands_(scene),
       solves_(scene.bodies.size()),
       changes_(scene.bodies.size()),
@@ -47,14 +49,55 @@ std::uint32_t BodySystem::solve(const Plan& plan, const BodyForces& forces, cons
   const std::uint32_t status = solve_alone(forces, step);
   const bool joined = plan.has(PassId::kJoints);
   if (joined) joints_.begin(bodies_, driven_, step.dt, solves_);
-  if (plan.has(PassId::kContacts))
-    finder_.find(bodies_, solves_, 0.25 * plan.spacing, step.dt, memory_, contacts_);
+  if (plan.has(PassId::kContacts)) find_contacts(plan, step.dt);
   if (joined || plan.has(PassId::kContacts))
     solve_contacts(contacts_, materials_, bodies_, step.dt, memory_, solves_, joined ? &joints_ : nullptr);
   if (joined) joints_.finish(bodies_, driven_, step.dt, step.share, solves_);
   report(step);
   for (std::size_t b = 0; b < bodies_.size(); ++b) changes_[b] = twist_change(bodies_[b], solves_[b]);
   return status;
+}
+
+void BodySystem::find_contacts(const Plan& plan, double dt) {
+  const double margin = 0.25 * plan.spacing;
+  if (!blades_.any() || !cuts_.any()) return finder_.find(bodies_, solves_, margin, dt, memory_, contacts_);
+  std::vector<Contact> of_blades;
+  blades_.find(bodies_, solves_, cuts_, dt, of_blades);
+  finder_.find(bodies_, solves_, margin, dt, memory_, contacts_, blades_.pairs());
+  if (of_blades.empty()) return;
+  contacts_.insert(contacts_.end(), of_blades.begin(), of_blades.end());
+  // Pair by pair, as the memory wants them.
+  std::ranges::stable_sort(
+      contacts_, {}, [](const Contact& c) { return std::pair(std::min(c.a, c.b), std::max(c.a, c.b)); });
+}
+
+void BodySystem::become(int body, const RigidBody& as) {
+  RigidBody& is = bodies_[static_cast<std::size_t>(body)];
+  if (is.local_center != as.local_center) joints_.recentre(body, is.local_center - as.local_center);
+  is = as;
+}
+
+void BodySystem::reshape(int body, const PieceShape& shape) {
+  cuts_.set(body, shape);
+  if (shape.planes.empty()) return finder_.set_shape(body, nullptr);
+  ContactFinder::NewShape as{shape.surface.positions, shape.surface.normals, shape.field};
+  const Corners corners = corners_of(shape.solid);
+  as.points.insert(as.points.end(), corners.points.begin(), corners.points.end());
+  as.normals.insert(as.normals.end(), corners.normals.begin(), corners.normals.end());
+  finder_.set_shape(body, &as);
+}
+
+void BodySystem::part(int body, const PieceShape& rest, int piece, const PieceShape& off,
+                      const CutPlane& plane) {
+  const std::vector<RigidBody> before = bodies_;
+  const RigidBody& whole = before[static_cast<std::size_t>(body)];
+  become(body, part_of(whole, rest.mass));
+  become(piece, part_of(whole, off.mass));
+  reshape(body, rest);
+  reshape(piece, off);
+  memory_.part(body, piece, plane, before, bodies_);
+  blades_.forget(body);
+  blades_.forget(piece);
 }
 
 void BodySystem::predict(const Plan& plan, const BodyForces& forces, const SubStep& step,
@@ -187,7 +230,7 @@ void BodySystem::damp_held(double keep) {
 void BodySystem::restore(std::vector<RigidBody> bodies, std::vector<GripState> grips,
                          std::vector<HandleInput> inputs, Hands::Stiffness stiffness,
                          std::vector<KeptImpulse> impulses) {
-  bodies_ = std::move(bodies);
+  for (std::size_t b = 0; b < bodies.size(); ++b) become(static_cast<int>(b), bodies[b]);
   grips_ = std::move(grips);
   hands_.restore(std::move(inputs));
   hands_.restore(std::move(stiffness));

@@ -4,8 +4,10 @@
 #include <span>
 #include <vector>
 
+#include "sim/bodies/blades.h"
 #include "sim/bodies/body_room.h"
 #include "sim/bodies/contacts.h"
+#include "sim/bodies/cut_bodies.h"
 #include "sim/bodies/driven_bodies.h"
 #include "sim/bodies/hands.h"
 #include "sim/bodies/joints.h"
@@ -65,7 +67,16 @@ class BodySystem {
 
   /// Between steps: puts a body, by its number, out of the world, or one that is away in.
   void take_away(int body) { put_away(bodies_[static_cast<std::size_t>(body)]); }
-  void bring(int body, const RigidBody& as) { bodies_[static_cast<std::size_t>(body)] = as; }
+  void bring(int body, const RigidBody& as) { become(body, as); }
+  /// Between steps: what of `body` is beyond `plane`, in its mesh frame, is `piece`, which was away, from now
+  /// on. `rest` and `off` are what the two are within their planes.
+  void part(int body, const PieceShape& rest, int piece, const PieceShape& off, const CutPlane& plane);
+  /// Another surface of a body that may be cut; its mass is bring()'s or restore()'s.
+  void reshape(int body, const PieceShape& shape);
+  const CutBodies& cuts() const { return cuts_; }
+  const Blades& blades() const { return blades_; }
+  void refuse(const Incision& incision) { blades_.refuse(incision); }
+  void restore(std::vector<Incision> incisions) { blades_.restore(std::move(incisions)); }
   const ContactFinder& shapes() const { return finder_; }
   const DrivenBodies& driven() const { return driven_; }
 
@@ -89,6 +100,8 @@ class BodySystem {
 
  private:
   std::span<const ActiveCoupling> couplings_of(int body) const;
+  void become(int body, const RigidBody& as);
+  void find_contacts(const Plan& plan, double dt);
   bool is_held(int body) const;
   const Matrix6* drag_on(int body, const BodyForces& forces, double dt, Matrix6& room,
                          Wrench& external) const;
@@ -101,6 +114,8 @@ class BodySystem {
   JointSystem joints_;
   BodyRoom room_;
   ContactFinder finder_;
+  CutBodies cuts_;
+  Blades blades_;
   Hands hands_;
   std::span<const ActiveCoupling> couplings_;  // of this sub-step
   std::vector<BodySolve> solves_;

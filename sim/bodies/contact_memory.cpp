@@ -41,6 +41,26 @@ std::span<const KeptImpulse> ContactMemory::between(int body, int other) const {
   return {first, last};
 }
 
+void ContactMemory::part(int body, int piece, const CutPlane& plane, const std::vector<RigidBody>& before,
+                         const std::vector<RigidBody>& after) {
+  const Pose to_mesh = inverse(before[static_cast<std::size_t>(body)].mesh_pose());
+  for (KeptImpulse& k : kept_) {
+    if (k.first != body && k.second != body) continue;
+    const glm::dvec3 where = k.place(before);
+    if (plane.distance(transform_point(to_mesh, where)) > 0.0) {
+      (k.first == body ? k.first : k.second) = piece;
+      if (k.first > k.second) {
+        std::swap(k.first, k.second);
+        k.impulse = -k.impulse;
+      }
+    }
+    const RigidBody& carrier = after[static_cast<std::size_t>(k.carrier(after))];
+    k.point = glm::conjugate(carrier.orientation) * (where - carrier.position);
+  }
+  std::stable_sort(kept_.begin(), kept_.end(),
+                   [](const KeptImpulse& x, const KeptImpulse& y) { return pair_of(x) < pair_of(y); });
+}
+
 void ContactMemory::add(const Contact& contact, const glm::dvec3& impulse_on_a,
                         const std::vector<RigidBody>& bodies) {
   KeptImpulse k = place(contact, bodies);

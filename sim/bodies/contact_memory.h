@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "sim/bodies/contact_rows.h"
+#include "sim/math/cut_plane.h"
 
 namespace slosh {
 
@@ -38,6 +39,11 @@ class ContactMemory {
   /// Forgets all; the contacts of a pair must then be added together, pairs in the order of their indices.
   void clear() { kept_.clear(); }
   void add(const Contact& contact, const glm::dvec3& impulse_on_a, const std::vector<RigidBody>& bodies);
+
+  /// What `body` had beyond `plane`, in its mesh frame, is `piece`'s from now on: it was cut. `before`,
+  /// `after`: all bodies then and now, all in the same places.
+  void part(int body, int piece, const CutPlane& plane, const std::vector<RigidBody>& before,
+            const std::vector<RigidBody>& after);
 
   const std::vector<KeptImpulse>& kept() const { return kept_; }
   void restore(std::vector<KeptImpulse> kept) { kept_ = std::move(kept); }

@@ -1,6 +1,8 @@
 // One contact as rows of a velocity solve: along the normal, and along two tangents for friction.
 #pragma once
 
+#include <limits>
+
 #include "sim/bodies/body_solve.h"
 
 namespace slosh {
@@ -8,9 +10,11 @@ namespace slosh {
 /// One touching point. The normal points from `b` to `a`, world.
 struct Contact {
   int a = 0, b = 0;
-  glm::dvec3 point{0.0};   ///< world
-  glm::dvec3 normal{0.0};  ///< unit
-  double distance = 0.0;   ///< m, negative when the bodies overlap
+  glm::dvec3 point{0.0};                                 ///< world
+  glm::dvec3 normal{0.0};                                ///< unit
+  double distance = 0.0;                                 ///< m, negative when the bodies overlap
+  double most{std::numeric_limits<double>::infinity()};  ///< N·s: at this it yields
+  bool of_blade{};                                       ///< of a cut (blades.h): without friction or bounce
 };
 
 struct ContactMaterial {
@@ -115,6 +119,7 @@ struct ContactRows {
   glm::dvec3 n{0.0}, u{0.0}, v{0.0};  // their directions
   Targets target;
   double friction = 0.0;
+  double most{std::numeric_limits<double>::infinity()};  // N·s along the normal
 };
 
 SLOSH_HD inline ContactRows make_rows(const Contact& c, const ContactMaterial& material,
@@ -133,6 +138,7 @@ SLOSH_HD inline ContactRows make_rows(const Contact& c, const ContactMaterial& m
   const double after = speed_along(rows.normal, solves[c.a].velocity, solves[c.b].velocity);
   rows.target = targets(c.distance, before, after, material.restitution, dt);
   rows.friction = material.friction;
+  rows.most = c.most;
   return rows;
 }
 
@@ -158,7 +164,7 @@ SLOSH_HD inline glm::dvec3 impulse_on_a(const ContactRows& rows) {
 SLOSH_HD inline double solve_once(ContactRows& rows, double target, Vector6& a, Vector6& b) {
   Constraint& n = rows.normal;
   const double wanted = n.impulse + n.effective_mass * (target - speed_along(n, a, b));
-  const double normal_change = glm::max(wanted, 0.0) - n.impulse;
+  const double normal_change = glm::min(glm::max(wanted, 0.0), rows.most) - n.impulse;
   apply(n, normal_change, a, b);
   Constraint& u = rows.tangent_u;
   Constraint& v = rows.tangent_v;

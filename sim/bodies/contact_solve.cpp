@@ -153,8 +153,10 @@ void solve_contacts(const std::vector<Contact>& contacts, const std::vector<Cont
     const ContactMaterial& a = materials[c.a];
     const ContactMaterial& b = materials[c.b];
     const ContactMaterial material{std::min(a.friction, b.friction), std::max(a.restitution, b.restitution)};
-    all.push_back(rows::make_rows(c, material, bodies.data(), dt, solves.data()));
-    begin.push_back(memory.recall(c, bodies));
+    all.push_back(
+        rows::make_rows(c, c.of_blade ? ContactMaterial{} : material, bodies.data(), dt, solves.data()));
+    // Several of a blade's are at one place: which is which is not known again.
+    begin.push_back(c.of_blade ? glm::dvec3(0.0) : memory.recall(c, bodies));
   }
   Spreads spreads(joints ? contacts.size() : 0);
   for (std::size_t i = 0; i < spreads.size(); ++i) {

@@ -104,18 +104,39 @@ ContactFinder::ContactFinder(const Scene& scene, const SampledScene& sampled) : 
     if (scene.bodies[i].mesh >= 0) {
       add_corners(scene.meshes[static_cast<std::size_t>(scene.bodies[i].mesh)], shape.points, shape.normals);
     }
-    shape.flat = flat_points(shape.points, shape.normals, static_cast<float>(1.5 * spacing_));
-    if (shape.points.empty()) continue;
-    std::vector<std::uint32_t> all(shape.points.size());
-    std::iota(all.begin(), all.end(), 0u);
-    cluster(shape.points, all, shape.clusters);
-    shape.lower = shape.upper = shape.points.front();
-    for (const glm::vec3& p : shape.points) {
-      shape.lower = glm::min(shape.lower, p);
-      shape.upper = glm::max(shape.upper, p);
-      shape.radius = std::max(shape.radius, static_cast<double>(glm::length(p)));
-    }
+    measure(shape);
   }
+}
+
+// All that follows from the points and their normals.
+void ContactFinder::measure(Shape& shape) const {
+  shape.flat = flat_points(shape.points, shape.normals, static_cast<float>(1.5 * spacing_));
+  shape.clusters.clear();
+  if (shape.points.empty()) return;
+  std::vector<std::uint32_t> all(shape.points.size());
+  std::iota(all.begin(), all.end(), 0u);
+  cluster(shape.points, all, shape.clusters);
+  shape.lower = shape.upper = shape.points.front();
+  shape.radius = 0.0;
+  for (const glm::vec3& p : shape.points) {
+    shape.lower = glm::min(shape.lower, p);
+    shape.upper = glm::max(shape.upper, p);
+    shape.radius = std::max(shape.radius, static_cast<double>(glm::length(p)));
+  }
+}
+
+void ContactFinder::set_shape(int body, const NewShape* as) {
+  Shape& shape = shapes_[static_cast<std::size_t>(body)];
+  const auto whole = whole_.find(body);
+  if (!as) {
+    if (whole != whole_.end()) shape = whole->second;
+    return;
+  }
+  if (whole == whole_.end()) whole_.emplace(body, shape);
+  shape.points = as->points;
+  shape.normals = as->normals;
+  shape.field = as->field;
+  measure(shape);
 }
 
 // Halves them across their longest side until few are left.
@@ -363,7 +384,7 @@ void ContactFinder::keep_spread(const std::vector<RigidBody>& bodies, std::span<
 
 void ContactFinder::find(const std::vector<RigidBody>& bodies, const std::vector<BodySolve>& solves,
                          double margin, double dt, const ContactMemory& memory,
-                         std::vector<Contact>& contacts) {
+                         std::vector<Contact>& contacts, const std::set<std::pair<int, int>>& elsewhere) {
   contacts.clear();
   const Motion motion{bodies, solves, margin, dt};
   const int count = static_cast<int>(bodies.size());
@@ -372,6 +393,7 @@ void ContactFinder::find(const std::vector<RigidBody>& bodies, const std::vector
       if (!bodies[i].free && !bodies[j].free) continue;
       if (bodies[i].gone || bodies[j].gone) continue;
       if (!joined_.empty() && joined_.contains({i, j})) continue;
+      if (!elsewhere.empty() && elsewhere.contains({i, j})) continue;
       if (shapes_[i].points.empty() || shapes_[j].points.empty()) continue;
       const double reach =
           margin + dt * (motion.fastest(i, shapes_[i].radius) + motion.fastest(j, shapes_[j].radius));

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <set>
 #include <span>
 #include <utility>
@@ -29,11 +30,19 @@ class ContactFinder {
   /// Points closer than `margin` (m) to the other body's surface, and those that come as close within `dt` s
   /// at the speeds that `solves` has found so far, however fast. Of a patch's points those that `memory` has
   /// come first. `contacts` is cleared first.
+  /// Pairs of `elsewhere`, the lower index first, are left out: blades that cut (blades.h).
   void find(const std::vector<RigidBody>& bodies, const std::vector<BodySolve>& solves, double margin,
-            double dt, const ContactMemory& memory, std::vector<Contact>& contacts);
+            double dt, const ContactMemory& memory, std::vector<Contact>& contacts,
+            const std::set<std::pair<int, int>>& elsewhere = {});
 
   /// Of a body's surface, in its mesh frame; none of a probe.
   std::span<const glm::vec3> points(int body) const { return shapes_[static_cast<std::size_t>(body)].points; }
+  /// Another surface of a body: what is left of it, or all of it as it was at first where that is null.
+  struct NewShape {
+    std::vector<glm::vec3> points, normals;  ///< samples, then corners
+    DistanceField field;
+  };
+  void set_shape(int body, const NewShape* shape);
   DistanceFieldView field(int body) const { return shapes_[static_cast<std::size_t>(body)].field.view(); }
 
  private:
@@ -64,10 +73,12 @@ class ContactFinder {
   void keep_spread(const std::vector<RigidBody>& bodies, std::span<const KeptImpulse> known,
                    std::vector<Contact>& contacts);
   void points_against_field(const Motion& motion, int points_of, int field_of, double reach);
+  void measure(Shape& shape) const;
   static void cluster(const std::vector<glm::vec3>& points, std::span<std::uint32_t> which,
                       std::vector<Cluster>& out);
 
   std::vector<Shape> shapes_;
+  std::map<int, Shape> whole_;            // of bodies that were cut
   std::set<std::pair<int, int>> joined_;  // the lower index first
   double spacing_;
   std::vector<std::uint64_t> near_;  // a bit for each point that may be near the other body

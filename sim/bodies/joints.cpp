@@ -155,6 +155,12 @@ bool JointSystem::near(const Linked& joint, const std::vector<RigidBody>& bodies
          glm::length(turned) <= joint.joins_turn;
 }
 
+void JointSystem::recentre(int body, const glm::dvec3& off) {
+  for (Linked& joint : joints_)
+    for (JointSide* side : {&joint.first, &joint.second})
+      if (side->body == body) side->point += off;
+}
+
 void JointSystem::begin_step() {
   std::fill(means_.begin(), means_.end(), JointState{});
 }

@@ -89,6 +89,9 @@ class JointSystem {
   /// Pairs of bodies that joints hold together, the lower index first; with the world's −1.
   const std::set<std::pair<int, int>>& connected() const { return connected_; }
 
+  /// A body's centre of mass is elsewhere in it: it went back by `off`, m, in its axes.
+  void recentre(int body, const glm::dvec3& off);
+
   /// Adds the last sub-step's impulses to the momenta.
   void predict(const std::vector<RigidBody>& bodies, std::span<ViscousBody> out) const;
 

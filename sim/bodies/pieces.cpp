@@ -175,11 +175,21 @@ Extent extent_along(const ConvexSolid& solid, const glm::dvec3& direction) {
 }
 
 std::vector<glm::dvec3> section(const ConvexSolid& solid, const CutPlane& plane) {
-  constexpr int kSection = -2;
-  const ConvexSolid inner = clipped(solid, plane, kSection);
-  for (const ConvexSolid::Face& face : inner.faces)
-    if (face.plane == kSection) return face.corners;
-  return {};
+  std::vector<glm::dvec3> rim;
+  for (const ConvexSolid::Face& face : solid.faces) {
+    double before = plane.distance(face.corners.back());
+    for (std::size_t i = 0; i < face.corners.size(); ++i) {
+      const double now = plane.distance(face.corners[i]);
+      if ((before <= 0.0) != (now <= 0.0)) {
+        const std::size_t last = i == 0 ? face.corners.size() - 1 : i - 1;
+        rim.push_back(crossing(face.corners[last], face.corners[i], before, now));
+      }
+      before = now;
+    }
+  }
+  if (!rim.empty()) put_in_order(plane.normal, rim);
+  if (rim.size() < 3) rim.clear();
+  return rim;
 }
 
 SurfaceSamples samples_within(const SurfaceSamples& whole, std::span<const CutPlane> planes,

@@ -22,6 +22,22 @@ RigidBody make_rigid_body(const Body& source) {
   return body;
 }
 
+void take_mass(RigidBody& body, const MassProperties& mass) {
+  body.mass = mass.mass;
+  body.inertia = mass.inertia;
+  body.inverse_inertia = glm::inverse(mass.inertia);
+  body.local_center = mass.center_of_mass;
+}
+
+RigidBody part_of(const RigidBody& body, const MassProperties& mass) {
+  RigidBody part = body;
+  take_mass(part, mass);
+  part.position = transform_point(body.mesh_pose(), mass.center_of_mass);
+  part.velocity = body.velocity_at(part.position);
+  part.angular_momentum = part.world_inertia() * body.angular_velocity;
+  return part;
+}
+
 void put_away(RigidBody& body) {
   body.gone = true;
   body.position = glm::dvec3(kAway);

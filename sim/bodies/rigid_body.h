@@ -41,6 +41,11 @@ struct RigidBody {
 
 /// As the scene has it, there or away.
 RigidBody make_rigid_body(const Body& body);
+/// Another mass, wherever its centre of mass now lies in it; position and momenta stay the numbers that they
+/// are.
+void take_mass(RigidBody& body, const MassProperties& mass);
+/// What is left of a body, of that mass: each of its points is where it was and moves as it did.
+RigidBody part_of(const RigidBody& body, const MassProperties& mass);
 /// `body` where what is away is kept, at rest.
 void put_away(RigidBody& body);
 

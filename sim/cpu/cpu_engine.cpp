@@ -100,6 +100,8 @@ class CpuEngine final : public ParticleEngine {
     s_.context.broken = state.broken;
   }
 
+  void reshape(const ReshapedBody& as) override { s_.reshape(as); }
+
   bool save_bonds(BondTable& out) const override {
     out = s_.bonds.table;
     return true;

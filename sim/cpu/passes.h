@@ -42,6 +42,9 @@ class BodySurface {
   /// placed.
   void set_velocities(std::span<const RigidBody> bodies, std::span<const Twist> twists);
 
+  /// Other particles from place `first` on, of the same body.
+  void replace(std::size_t first, std::span<const SurfaceParticle> particles);
+
   const BoundaryParticles& sorted() const { return sorted_; }
 
  private:

@@ -28,6 +28,15 @@ CpuState::CpuState(const RunConstants& constants, const ParticleStart& start,
   for (const DistanceField& field : fields) clamp_solids.push_back(clamp_solid(field, field.view()));
 }
 
+void CpuState::reshape(const ReshapedBody& as) {
+  moving.replace(as.first, as.particles);
+  const std::size_t at = kImpulseWords * as.body;
+  recentre(std::span(impulses).subspan(at, kImpulseWords), as.recentred, context.impulse_units);
+  if (!context.plan.clamps_penetration()) return;
+  fields[as.body] = *as.clamp;
+  clamp_solids[as.body] = clamp_solid(fields[as.body], fields[as.body].view());
+}
+
 void CpuState::sum_wrenches(const BodySurface& surface, std::span<Wrench> wrenches,
                             std::span<BodyDrag> of_drag) {
   centers.clear();

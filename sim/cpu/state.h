@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "sim/cpu/passes.h"
+#include "sim/particle_engine.h"
 #include "sim/passes/bonds/cpu.h"
 #include "sim/passes/pass.h"
 #include "sim/passes/pressure_solve/cpu_pairs.h"
@@ -25,6 +26,7 @@ struct CpuState {
     if (!own) own = std::make_shared<T>();
     return *static_cast<T*>(own.get());
   }
+  void reshape(const ReshapedBody& as);
   void sum_wrenches(const BodySurface& surface, std::span<Wrench> wrenches, std::span<BodyDrag> drags);
 
   // Probes are particles that their body carries: their state goes in before the passes, the force comes out

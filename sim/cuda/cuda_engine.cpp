@@ -160,6 +160,20 @@ class CudaEngine final : public ParticleEngine {
     status_ = 0;
   }
 
+  void reshape(const ReshapedBody& as) override {
+    use_gpu();
+    if (s_.check.failed()) return;
+    s_.check.ok(cudaStreamSynchronize(s_.stream), "waiting for the step");
+    s_.moving.replace(as.first, as.particles, s_.check, s_.stream);
+    s_.clamps.reshape(as.body, *as.clamp, s_.check, s_.stream);
+    if (as.recentred == glm::dvec3(0.0)) return;
+    ImpulseSums impulses = fetch_impulses(s_.clamps, s_.check, s_.stream);
+    if (s_.check.failed()) return;
+    const std::size_t at = kImpulseWords * as.body;
+    recentre(std::span(impulses).subspan(at, kImpulseWords), as.recentred, s_.constants.impulse_units);
+    s_.clamps.write(impulses, s_.check, s_.stream);
+  }
+
   bool save_bonds(BondTable& out) const override {
     out = {};
     if (!s_.constants.plan.has(PassId::kBonds)) return true;

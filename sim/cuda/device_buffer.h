@@ -63,6 +63,14 @@ class DeviceBuffer {
     check.ok(cudaStreamSynchronize(stream), "upload");
   }
 
+  /// Likewise, from element `first` on.
+  void write_from(std::size_t first, std::span<const T> from, CallCheck& check, cudaStream_t stream) {
+    if (from.empty() || check.failed()) return;
+    check.ok(cudaMemcpyAsync(data_ + first, from.data(), from.size_bytes(), cudaMemcpyHostToDevice, stream),
+             "upload");
+    check.ok(cudaStreamSynchronize(stream), "upload");
+  }
+
   T* data() const { return data_; }
   std::size_t size() const { return size_; }
   std::size_t bytes() const { return size_ * sizeof(T); }

@@ -191,6 +191,21 @@ void SurfaceBuffers::allocate(const std::vector<SurfaceParticle>& particles, con
                   upload_mirrors(particles, check)};
 }
 
+void SurfaceBuffers::replace(std::size_t first, std::span<const SurfaceParticle> particles, CallCheck& check,
+                             cudaStream_t stream) {
+  std::vector<float4> position;
+  std::vector<float2> material;
+  std::vector<float> reach;
+  for (const SurfaceParticle& p : particles) {
+    position.push_back({p.position.x, p.position.y, p.position.z, p.pressure});
+    material.push_back({p.volume, p.viscosity});
+    reach.push_back(p.reach);
+  }
+  position_.write_from(first, position, check, stream);
+  material_.write_from(first, material, check, stream);
+  reach_.write_from(first, reach, check, stream);
+}
+
 MirrorPlanes SurfaceBuffers::upload_mirrors(const std::vector<SurfaceParticle>& particles, CallCheck& check) {
   std::vector<float4> normal, bend_a;
   std::vector<float2> bend_b;

@@ -88,6 +88,9 @@ class SurfaceBuffers {
   void allocate(const std::vector<SurfaceParticle>& particles, const CellGrid& grid, CallCheck& check);
   void place(const StepConstants& constants, const DeviceBody* bodies, SortSpace& space, CallCheck& check,
              cudaStream_t stream);
+  /// Other particles from place `first` on, of the same body.
+  void replace(std::size_t first, std::span<const SurfaceParticle> particles, CallCheck& check,
+               cudaStream_t stream);
 
   std::uint32_t count() const { return local_view_.count; }
   const LocalSurface& local() const { return local_view_; }

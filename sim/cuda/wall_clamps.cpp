@@ -19,6 +19,16 @@ void WallClamps::plan(const RunConstants& constants, const ParticleStart& start,
   sent_.allocate(solids_.size(), check);
 }
 
+void WallClamps::reshape(std::size_t body, const DistanceField& field, CallCheck& check,
+                         cudaStream_t stream) {
+  if (body >= solids_.size() || solids_[body].field.size.x == 0) return;
+  const DistanceFieldView there = solids_[body].field;
+  fields_.write_from(static_cast<std::size_t>(there.distance - fields_.data()), field.distance, check,
+                     stream);
+  solids_[body] = clamp_solid(field, there);
+  places_.clear();  // what was sent has the ball of the solid before
+}
+
 bool WallClamps::goes_as_sent(std::span<const RigidBody> before, std::span<const RigidBody> after) {
   bool same = places_.size() == 2 * after.size();
   places_.resize(2 * after.size());

@@ -22,6 +22,8 @@ class WallClamps {
   void send(const Plan& plan, std::span<const RigidBody> before, std::span<const RigidBody> after,
             CallCheck& check, cudaStream_t stream);
   ClampView view(const ImpulseUnits& units) const;
+  /// Another field of a body, on the grid that it had.
+  void reshape(std::size_t body, const DistanceField& field, CallCheck& check, cudaStream_t stream);
 
   /// What walls took from particles, as ImpulseSums.
   const DeviceBuffer<std::int64_t>& impulses() const { return impulses_; }

@@ -65,6 +65,14 @@ SLOSH_HD inline void impulse_on_body(const PutBack& p, const glm::dvec3& center,
   }
 }
 
+/// About a centre from which the one before is `off` m away.
+inline void recentre(std::span<std::int64_t> words, const glm::dvec3& off, const ImpulseUnits& units) {
+  glm::dvec3 impulse(0.0);
+  for (int i = 0; i < 3; ++i) impulse[i] = static_cast<double>(words[i]) * units.linear;
+  const glm::dvec3 more = glm::cross(off, impulse);
+  for (int i = 0; i < 3; ++i) words[3 + i] += in_units(more[i], units.angular);
+}
+
 /// One body's impulse as a wrench that acts for `dt` s.
 inline Wrench impulse_wrench(std::span<const std::int64_t> words, const ImpulseUnits& units, double dt) {
   Wrench w;

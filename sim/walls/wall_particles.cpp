@@ -329,64 +329,120 @@ std::vector<MirrorPlane> mirrors_of(const Body& body, const DraggingLayer& layer
   return mirror_planes(positions, normals, static_cast<float>(plan.support_radius));
 }
 
+// Of all bodies of a scene.
+struct LayerRules {
+  DragLayer layer;
+  WallDrag drag;
+  float lattice_volume, flat_drag, support;
+
+  LayerRules(const Scene& scene, const Plan& plan, DragLayer drags)
+      : layer(drags),
+        drag(wall_drag(plan.model, scene.support_ratio, layer)),
+        lattice_volume(static_cast<float>(std::pow(plan.spacing, 3))),
+        flat_drag(static_cast<float>(drag.factor(0.0))),
+        support(static_cast<float>(plan.support_radius)) {}
+  // Pressure and viscosity act from different layers.
+  bool apart() const { return layer == DragLayer::kSurface; }
+};
+
+struct PressingLayer {
+  std::vector<LayerParticle> particles;  // mesh frame
+  std::vector<float> pressures;
+};
+
+PressingLayer pressing_layer(const Scene& scene, const Plan& plan, const LayerRules& rules, std::size_t body,
+                             const SurfaceSamples& surface, const DistanceFieldView& field) {
+  PressingLayer pressing;
+  pressing.particles = own_layer(surface, field, plan, depths_of(scene, plan, surface.apart, rules.layer));
+  pressing.pressures.assign(pressing.particles.size(), static_cast<float>(plan.body_pressure[body]));
+  if (plan.model != ParticleModel::kPaper) pressing.pressures = layer_shares(pressing.particles, plan);
+  return pressing;
+}
+
+void add_particles(const Scene& scene, const Plan& plan, const LayerRules& rules, std::size_t b,
+                   const SurfaceSamples& surface, const DistanceFieldView& field,
+                   const PressingLayer& pressing, const DraggingLayer& dragging,
+                   std::vector<SurfaceParticle>& particles) {
+  const Body& body = scene.bodies[b];
+  const auto add = [&](const glm::vec3& at, float pressure, float volume, float lacks = 0.0f,
+                       const MirrorPlane& mirror = {}) {
+    particles.push_back({at, static_cast<std::uint16_t>(b), pressure, volume,
+                         static_cast<float>(body.dynamic_viscosity), rules.support - lacks, mirror});
+  };
+  for (std::size_t i = 0; i < pressing.particles.size(); ++i) {
+    const float volume = plan.model == ParticleModel::kPaper
+                             ? surface.particle_volume
+                             : pressing.pressures[i] / kWallShare * rules.lattice_volume * rules.flat_drag;
+    add(pressing.particles[i].position, pressing.pressures[i], rules.apart() ? 0.0f : volume,
+        pressing.particles[i].lacks);
+  }
+  if (!rules.apart()) return;
+  const float surface_volume = surface.particle_volume;
+  const std::vector<MirrorPlane> mirrors = mirrors_of(body, dragging, plan);
+  if (!mirrors.empty()) {
+    const double factor = mirror_factor(scene.support_ratio, rules.layer);
+    const float volume = static_cast<float>(factor) * surface_volume;
+    for (std::size_t i = 0; i < mirrors.size(); ++i)
+      add(dragging.positions[i], 0.0f, volume, 0.0f, mirrors[i]);
+    return;
+  }
+  for (const glm::vec3& p : dragging.positions) {
+    const float bent = bend(field, p, static_cast<float>(plan.spacing));
+    add(p, 0.0f, static_cast<float>(rules.drag.factor(bent)) * surface_volume);
+  }
+}
+
+// A convex part has less surface than the whole, but grids of samples end in whole numbers.
+constexpr std::size_t kPieceRoom = 4;  // so many share room for one more
+constexpr std::size_t kMinPieceRoom = 64;
+
 }  // namespace
 
 std::vector<SurfaceParticle> surface_particles(const Scene& scene, const SampledScene& sampled,
                                                const Plan& plan, BodyMotion motion) {
   std::vector<SurfaceParticle> particles;
   if (!plan.has(PassId::kWalls)) return particles;
-  const DragLayer layer = drag_layer(scene, plan);
-  const bool apart = layer == DragLayer::kSurface;  // pressure and viscosity act from different layers
-  const float lattice_volume = static_cast<float>(std::pow(plan.spacing, 3));
-  const WallDrag drag = wall_drag(plan.model, scene.support_ratio, layer);
-  const auto flat_drag = static_cast<float>(drag.factor(0.0));
-  const auto support = static_cast<float>(plan.support_radius);
+  const LayerRules rules(scene, plan, drag_layer(scene, plan));
   JoinedWalls joined;
-  if (motion == BodyMotion::kFixed) joined = joined_walls(scene, sampled, plan, layer);
-  std::vector<DraggingLayer> dragging;
-  if (apart) dragging = dragging_layers(scene, sampled, plan, motion);
+  if (motion == BodyMotion::kFixed) joined = joined_walls(scene, sampled, plan, rules.layer);
+  std::vector<DraggingLayer> dragging(scene.bodies.size());
+  if (rules.apart()) dragging = dragging_layers(scene, sampled, plan, motion);
   for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
     const Body& body = scene.bodies[b];
     if (moves(body.motion) != moves(motion) || body.point_probe) continue;
-    std::vector<LayerParticle> pressing;
-    std::vector<float> pressures;
-    if (motion == BodyMotion::kFixed && !joined.layers[b].empty()) {
-      pressing = std::move(joined.layers[b]);
-      pressures = std::move(joined.shares[b]);
-    } else {
-      const SurfaceSamples& surface = sampled.surfaces[b];
-      pressing = own_layer(surface, sampled.distance_fields[b].view(), plan,
-                           depths_of(scene, plan, surface.apart, layer));
-      pressures.assign(pressing.size(), static_cast<float>(plan.body_pressure[b]));
-      if (plan.model != ParticleModel::kPaper) pressures = layer_shares(pressing, plan);
-    }
-    const auto add = [&](const glm::vec3& at, float pressure, float volume, float lacks = 0.0f,
-                         const MirrorPlane& mirror = {}) {
-      particles.push_back({at, static_cast<std::uint16_t>(b), pressure, volume,
-                           static_cast<float>(body.dynamic_viscosity), support - lacks, mirror});
-    };
-    for (std::size_t i = 0; i < pressing.size(); ++i) {
-      const float volume = plan.model == ParticleModel::kPaper
-                               ? sampled.surfaces[b].particle_volume
-                               : pressures[i] / kWallShare * lattice_volume * flat_drag;
-      add(pressing[i].position, pressures[i], apart ? 0.0f : volume, pressing[i].lacks);
-    }
-    if (!apart) continue;
-    const float surface_volume = sampled.surfaces[b].particle_volume;
-    const std::vector<MirrorPlane> mirrors = mirrors_of(body, dragging[b], plan);
-    if (!mirrors.empty()) {
-      const double factor = mirror_factor(scene.support_ratio, layer);
-      const float volume = static_cast<float>(factor) * surface_volume;
-      for (std::size_t i = 0; i < mirrors.size(); ++i)
-        add(dragging[b].positions[i], 0.0f, volume, 0.0f, mirrors[i]);
-      continue;
-    }
-    for (const glm::vec3& p : dragging[b].positions) {
-      const float bent = bend(sampled.distance_fields[b].view(), p, static_cast<float>(plan.spacing));
-      add(p, 0.0f, static_cast<float>(drag.factor(bent)) * surface_volume);
+    PressingLayer pressing;
+    if (motion == BodyMotion::kFixed && !joined.layers[b].empty())
+      pressing = {std::move(joined.layers[b]), std::move(joined.shares[b])};
+    else
+      pressing =
+          pressing_layer(scene, plan, rules, b, sampled.surfaces[b], sampled.distance_fields[b].view());
+    const std::size_t first = particles.size();
+    add_particles(scene, plan, rules, b, sampled.surfaces[b], sampled.distance_fields[b].view(), pressing,
+                  dragging[b], particles);
+    if (is_cut(body)) {
+      const std::size_t own = particles.size() - first;
+      particles.resize(particles.size() + own / kPieceRoom + kMinPieceRoom, nobody(b));
     }
   }
   return particles;
+}
+
+std::vector<SurfaceParticle> particles_of_piece(const Scene& scene, const Plan& plan, DragLayer drags,
+                                                std::size_t body, const SurfaceSamples& surface,
+                                                const DistanceFieldView& field) {
+  std::vector<SurfaceParticle> particles;
+  if (!plan.has(PassId::kWalls)) return particles;
+  const LayerRules rules(scene, plan, drags);
+  DraggingLayer dragging;
+  if (rules.apart()) dragging = {surface.positions, surface.normals};
+  add_particles(scene, plan, rules, body, surface, field,
+                pressing_layer(scene, plan, rules, body, surface, field), dragging, particles);
+  return particles;
+}
+
+SurfaceParticle nobody(std::size_t body) {
+  constexpr float kNowhere = 1e6f;  // m: farther than anything, and its square is finite
+  return {glm::vec3(kNowhere), static_cast<std::uint16_t>(body), 0.0f, 0.0f, 0.0f, 0.0f, {}};
 }
 
 }  // namespace slosh

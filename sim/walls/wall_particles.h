@@ -7,6 +7,7 @@
 #include "scenes/scene.h"
 #include "sim/passes/pressure_force/pair_pressure.h"
 #include "sim/plan.h"
+#include "sim/viscosity/wall_drag.h"
 #include "sim/walls/mirror_planes.h"
 
 namespace slosh {
@@ -26,7 +27,17 @@ struct SurfaceParticle {
 
 /// The particles of the bodies whose motion is `motion`, body by body; none when the plan has no boundary
 /// pass.
+/// Behind those of a body that cuts make something of (is_cut) there is room for more: nobody().
 std::vector<SurfaceParticle> surface_particles(const Scene& scene, const SampledScene& sampled,
                                                const Plan& plan, BodyMotion motion);
+
+/// Those of a body that moves, with another surface and field than the scene's: a piece. Without room.
+/// `drags`: drag_layer() of the scene as it started.
+std::vector<SurfaceParticle> particles_of_piece(const Scene& scene, const Plan& plan, DragLayer drags,
+                                                std::size_t body, const SurfaceSamples& surface,
+                                                const DistanceFieldView& field);
+
+/// Fills room that `body` does not use: nowhere near any fluid.
+SurfaceParticle nobody(std::size_t body);
 
 }  // namespace slosh

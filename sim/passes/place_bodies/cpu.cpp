@@ -18,6 +18,10 @@ BodySurface::BodySurface(std::vector<SurfaceParticle> particles) : local_(std::m
   if (mirrors) sorted_.mirror.resize(local_.size());
 }
 
+void BodySurface::replace(std::size_t first, std::span<const SurfaceParticle> particles) {
+  std::copy(particles.begin(), particles.end(), local_.begin() + static_cast<std::ptrdiff_t>(first));
+}
+
 void BodySurface::place(const PassContext& context, std::span<const RigidBody> bodies) {
   int current = -1;
   SurfaceMotion motion;

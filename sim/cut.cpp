@@ -1,0 +1,159 @@
+// Bodies that are cut while a world runs.
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "sim/math/format.h"
+#include "sim/world_parts.h"
+
+namespace slosh {
+namespace {
+
+bool usable(const CutPlane& plane) {
+  return glm::length(plane.normal) > 1e-6 && glm::length(plane.normal) < 1e6 && std::abs(plane.offset) < 1e6;
+}
+
+}  // namespace
+
+Result<std::size_t> World::cut(std::size_t body, const CutPlane& plane) {
+  if (body >= impl_->scene.bodies.size()) return Error{"the world", "has no such body", ""};
+  if (!usable(plane)) return Error{"the plane of the cut", "is none", "Give it a direction"};
+  const double length = glm::length(plane.normal);
+  return impl_->cut_body(body, {plane.normal / length, plane.offset / length});
+}
+
+std::vector<std::vector<CutPlane>> World::cut_planes() const {
+  return impl_->bodies.cuts().all_planes();
+}
+
+Result<CutPlane> World::Impl::side_that_stays(std::size_t body, const CutPlane& plane) const {
+  bool inner = false, outer = false;
+  const auto is_on = [&](const glm::dvec3& at) { (plane.distance(at) > 0.0 ? outer : inner) = true; };
+  const auto index = static_cast<int>(body);
+  for (const Grip& grip : scene.grips)
+    if (grip.body == index) is_on(grip.pose.position);
+  for (const Joint& joint : scene.joints) {
+    if (joint.body == index) is_on(joint.pose.position);
+    if (joint.other != index) continue;
+    const Pose meets = joint.meets.value_or(
+        compose(inverse(scene.bodies[body].pose),
+                compose(scene.bodies[static_cast<std::size_t>(joint.body)].pose, joint.pose)));
+    is_on(meets.position);
+  }
+  if (inner && outer)
+    return Error{"'" + scene.bodies[body].name + "'", "has grips or joints on both sides of the cut",
+                 "Cut beside them"};
+  return outer ? plane.reversed() : plane;
+}
+
+Result<std::vector<SurfaceParticle>> World::Impl::particles_of(std::size_t body,
+                                                               const PieceShape& shape) const {
+  std::vector<SurfaceParticle> particles =
+      particles_of_piece(scene, plan(), drags_from, body, shape.surface, shape.field.view());
+  const std::size_t room = piece_slots[body].count;
+  if (particles.size() > room)
+    return Error{
+        "'" + scene.bodies[body].name + "'",
+        format("would have %zu particles in one piece, and there is room for %zu", particles.size(), room),
+        "Cut elsewhere"};
+  particles.resize(room, nobody(body));
+  return particles;
+}
+
+void World::Impl::reshape(std::size_t body, const PieceShape& shape,
+                          std::span<const SurfaceParticle> particles, const glm::dvec3& recentred) {
+  if (plan().has_fluid())
+    engine->reshape({body, piece_slots[body].first, particles, &shape.field, recentred});
+}
+
+Result<std::size_t> World::Impl::cut_body(std::size_t body, CutPlane plane) {
+  const auto index = static_cast<int>(body);
+  const std::string where = "'" + scene.bodies[body].name + "'";
+  const CutBodies& cuts = bodies.cuts();
+  if (!cuts.has(index)) return Error{where, "cannot be cut", "Give it pieces = 2 or more in the scene"};
+  const RigidBody& whole = bodies.bodies()[body];
+  if (whole.gone) return Error{where, "is not there", ""};
+  const Extent extent = extent_along(cuts.solid(index), plane.normal);
+  if (!(extent.least < plane.offset && plane.offset < extent.most))
+    return Error{where, "is missed by the plane", ""};
+  const auto& family = cuts.family(index);
+  const auto free = std::ranges::find_if(family, [&](int member) {
+    return member != index && is_away(bodies.bodies()[static_cast<std::size_t>(member)].mesh_pose());
+  });
+  if (free == family.end())
+    return Error{where, format("has all its %zu pieces in the world", family.size()),
+                 "Give it more pieces in the scene"};
+  const int piece = *free;
+  const Result<CutPlane> stays = side_that_stays(body, plane);
+  if (!stays) return stays.error();
+  plane = stays.value();
+  const auto within = [&](int of, const CutPlane& side) {
+    std::vector<CutPlane> planes = cuts.planes(index);
+    planes.push_back(side);
+    return cuts.shape(of, std::move(planes));
+  };
+  Result<PieceShape> rest = within(index, plane);
+  if (!rest) return rest.error();
+  Result<PieceShape> off = within(piece, plane.reversed());
+  if (!off) return off.error();
+  const auto is_of = [&](const auto& thing) { return thing.body == index; };
+  const bool held =
+      std::ranges::any_of(scene.grips, is_of) || std::ranges::any_of(scene.joints, [&](const Joint& joint) {
+        return joint.body == index || joint.other == index;
+      });
+  if (!held && off.value().mass.mass > rest.value().mass.mass) {
+    std::swap(rest.value(), off.value());
+    plane = plane.reversed();
+  }
+  Result<std::vector<SurfaceParticle>> of_rest = particles_of(body, rest.value());
+  if (!of_rest) return of_rest.error();
+  Result<std::vector<SurfaceParticle>> of_piece = particles_of(static_cast<std::size_t>(piece), off.value());
+  if (!of_piece) return of_piece.error();
+  const glm::dvec3 center = whole.position;
+  bodies.part(index, rest.value(), piece, off.value(), plane);
+  reshape(body, rest.value(), of_rest.value(), center - bodies.bodies()[body].position);
+  reshape(static_cast<std::size_t>(piece), off.value(), of_piece.value(), glm::dvec3(0.0));
+  wrenches[static_cast<std::size_t>(piece)] = {};
+  return static_cast<std::size_t>(piece);
+}
+
+Result<std::vector<World::Impl::Reshaping>> World::Impl::shapes_of(SavedState& state) const {
+  std::vector<Reshaping> all;
+  const CutBodies& cuts = bodies.cuts();
+  for (const Incision& i : state.incisions)
+    if (!scene.bodies[static_cast<std::size_t>(i.blade)].blade || !cuts.has(i.body))
+      return Error{"saved world", "a blade in it cuts what cannot be cut", ""};
+  state.planes.resize(cuts.any() ? scene.bodies.size() : 0);  // of an older one: nothing was cut
+  for (std::size_t b = 0; b < state.planes.size(); ++b) {
+    const auto index = static_cast<int>(b);
+    if (!cuts.has(index)) {
+      if (state.planes[b].empty()) continue;
+      return Error{"saved world", "a body in it is cut that cannot be cut", ""};
+    }
+    if (state.planes[b] == cuts.planes(index)) continue;
+    Result<PieceShape> shape = cuts.shape(index, state.planes[b]);
+    if (!shape) return shape.error();
+    Result<std::vector<SurfaceParticle>> particles = particles_of(b, shape.value());
+    if (!particles) return particles.error();
+    take_mass(state.bodies[b], shape.value().mass);
+    all.push_back({b, std::move(shape.value()), std::move(particles.value())});
+  }
+  return all;
+}
+
+void World::Impl::make_whole(std::size_t body) {
+  const auto index = static_cast<int>(body);
+  if (bodies.cuts().planes(index).empty()) return;
+  const Result<PieceShape> whole = bodies.cuts().shape(index, {});
+  const Result<std::vector<SurfaceParticle>> particles = particles_of(body, whole.value());
+  bodies.reshape(index, whole.value());
+  reshape(body, whole.value(), particles.value(), glm::dvec3(0.0));
+}
+
+void World::Impl::cut_through() {
+  while (const std::optional<Incision> incision = bodies.blades().through(bodies.bodies(), bodies.cuts())) {
+    if (!cut_body(static_cast<std::size_t>(incision->body), incision->plane)) bodies.refuse(*incision);
+  }
+}
+
+}  // namespace slosh
