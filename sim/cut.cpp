@@ -152,7 +152,11 @@ void World::Impl::make_whole(std::size_t body) {
 
 void World::Impl::cut_through() {
   while (const std::optional<Incision> incision = bodies.blades().through(bodies.bodies(), bodies.cuts())) {
-    if (!cut_body(static_cast<std::size_t>(incision->body), incision->plane)) bodies.refuse(*incision);
+    const Result<std::size_t> piece = cut_body(static_cast<std::size_t>(incision->body), incision->plane);
+    if (piece)
+      bodies.end_cut(*incision, static_cast<int>(piece.value()));
+    else
+      bodies.refuse(*incision);
   }
 }
 

@@ -111,9 +111,13 @@ void incision(S& s, I& i) {
   cut_plane(s, i.plane);
   three(s, i.way);
   s.real(i.front);
-  auto refused = static_cast<std::uint8_t>(i.refused);
-  s.raw(refused);
-  if constexpr (S::kReads) i.refused = refused != 0;
+  auto stage = static_cast<std::uint8_t>(i.stage);
+  s.raw(stage);
+  if constexpr (S::kReads) {
+    if (s.ok() && stage > static_cast<std::uint8_t>(CutStage::kParting))
+      return s.fail("a blade in it neither cuts nor is through");
+    i.stage = static_cast<CutStage>(stage);
+  }
 }
 
 void write_cuts(StateSink& s, const SavedState& state) {

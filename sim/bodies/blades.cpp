@@ -215,6 +215,10 @@ void Blades::find(const std::vector<RigidBody>& bodies, const std::vector<BodySo
         if (room) incision = enter(blade, body, bodies, solves, cuts, dt);
       }
       if (!incision) continue;
+      if (incision->stage == CutStage::kParting) {
+        incisions_.push_back(*incision);
+        continue;
+      }
       const std::optional<Seen> seen = see(blade, *incision, bodies, cuts);
       // Drawn back, slid out along its edge or all of it gone past, it is out, and the body whole.
       if (!seen) continue;
@@ -235,7 +239,7 @@ void Blades::find(const std::vector<RigidBody>& bodies, const std::vector<BodySo
 
 std::optional<Incision> Blades::through(const std::vector<RigidBody>& bodies, const CutBodies& cuts) const {
   for (const Incision& incision : incisions_) {
-    if (incision.refused) continue;
+    if (incision.stage != CutStage::kCutting) continue;
     const auto blade = std::ranges::find(blades_, incision.blade, &Blade::body);
     if (blade == blades_.end()) continue;
     const std::optional<Seen> seen = see(*blade, incision, bodies, cuts);
@@ -252,7 +256,35 @@ void Blades::forget(int body) {
 
 void Blades::refuse(const Incision& incision) {
   for (Incision& kept : incisions_)
-    if (same_pair(kept, incision.blade, incision.body)) kept.refused = true;
+    if (same_pair(kept, incision.blade, incision.body)) kept.stage = CutStage::kRefused;
+}
+
+void Blades::part(const Incision& through, int body, int piece) {
+  for (const int each : {body, piece}) {
+    incisions_.push_back(through);
+    incisions_.back().body = each;
+    incisions_.back().stage = CutStage::kParting;
+  }
+}
+
+void Blades::push_aside(const std::vector<RigidBody>& bodies, std::vector<Contact>& contacts) {
+  constexpr double kAside = 0.7;  // cosine
+  std::erase_if(incisions_, [&](const Incision& incision) {
+    if (incision.stage != CutStage::kParting) return false;
+    const glm::dvec3 across =
+        bodies[static_cast<std::size_t>(incision.body)].orientation * incision.plane.normal;
+    const std::pair<int, int> pair = in_order(incision.blade, incision.body);
+    bool near = false;
+    std::erase_if(contacts, [&](Contact& c) {
+      if (in_order(c.a, c.b) != pair) return false;
+      near = true;
+      const double aside = glm::dot(c.normal, across);
+      c.normal = aside > 0.0 ? across : -across;
+      c.of_blade = true;
+      return std::abs(aside) < kAside;
+    });
+    return !near;
+  });
 }
 
 }  // namespace slosh

@@ -2,6 +2,7 @@
 // contact of a largest impulse, below which the blade stands and at which it moves on.
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <set>
 #include <utility>
@@ -12,13 +13,17 @@
 
 namespace slosh {
 
+/// kRefused: it went through, and the body could not be cut. kParting: it did and it was, and the blade,
+/// which is thicker than a cut, is still beside that part.
+enum class CutStage : std::uint8_t { kCutting, kRefused, kParting };
+
 /// A blade that entered a body. In the body's mesh frame, as it was then: the body is cut along one plane.
 struct Incision {
   int blade = 0, body = 0;
   CutPlane plane;       ///< the blade's
   glm::dvec3 way{0.0};  ///< unit, along the plane: to where the edge cuts
   double front{};       ///< m along the way: how far the edge came
-  bool refused{};       ///< it went through, and the body could not be cut
+  CutStage stage{CutStage::kCutting};
 };
 
 class Blades {
@@ -37,6 +42,11 @@ class Blades {
   /// The body is another than it was.
   void forget(int body);
   void refuse(const Incision& incision);
+  /// The body was cut, and these are its parts.
+  void part(const Incision& through, int body, int piece);
+  /// Contacts between a blade and a part that it pushes aside act across the cut alone, without friction, as
+  /// long as there are any: near its edge the nearest way out of it is ahead, and what it cut would stop it.
+  void push_aside(const std::vector<RigidBody>& bodies, std::vector<Contact>& contacts);
 
   const std::vector<Incision>& kept() const { return incisions_; }
   void restore(std::vector<Incision> kept) { incisions_ = std::move(kept); }

@@ -64,6 +64,7 @@ void BodySystem::find_contacts(const Plan& plan, double dt) {
   std::vector<Contact> of_blades;
   blades_.find(bodies_, solves_, cuts_, dt, of_blades);
   finder_.find(bodies_, solves_, margin, dt, memory_, contacts_, blades_.pairs());
+  blades_.push_aside(bodies_, contacts_);
   if (of_blades.empty()) return;
   contacts_.insert(contacts_.end(), of_blades.begin(), of_blades.end());
   // Pair by pair, as the memory wants them.

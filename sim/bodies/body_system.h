@@ -75,6 +75,8 @@ class BodySystem {
   void reshape(int body, const PieceShape& shape);
   const CutBodies& cuts() const { return cuts_; }
   const Blades& blades() const { return blades_; }
+  /// A blade went through: into two, or it was refused.
+  void end_cut(const Incision& through, int piece) { blades_.part(through, through.body, piece); }
   void refuse(const Incision& incision) { blades_.refuse(incision); }
   void restore(std::vector<Incision> incisions) { blades_.restore(std::move(incisions)); }
   const ContactFinder& shapes() const { return finder_; }

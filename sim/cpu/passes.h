@@ -50,6 +50,7 @@ class BodySurface {
  private:
   std::vector<SurfaceParticle> local_;
   std::vector<std::uint32_t> keys_;
+  std::vector<std::uint32_t> from_;  // which of local_ each placed one is
   std::vector<glm::vec3> placed_, velocity_;
   KeySorter sorter_;
   BoundaryParticles sorted_;

@@ -441,8 +441,7 @@ std::vector<SurfaceParticle> particles_of_piece(const Scene& scene, const Plan& 
 }
 
 SurfaceParticle nobody(std::size_t body) {
-  constexpr float kNowhere = 1e6f;  // m: farther than anything, and its square is finite
-  return {glm::vec3(kNowhere), static_cast<std::uint16_t>(body), 0.0f, 0.0f, 0.0f, 0.0f, {}};
+  return {glm::vec3(kNobodysPlace), static_cast<std::uint16_t>(body), 0.0f, 0.0f, 0.0f, 0.0f, {}};
 }
 
 }  // namespace slosh

@@ -39,5 +39,10 @@ std::vector<SurfaceParticle> particles_of_piece(const Scene& scene, const Plan& 
 
 /// Fills room that `body` does not use: nowhere near any fluid.
 SurfaceParticle nobody(std::size_t body);
+inline constexpr float kNobodysPlace =
+    1e6f;  ///< m, on each axis: farther than anything, and its square is finite
+inline bool is_nobody(const SurfaceParticle& p) {
+  return p.position.x == kNobodysPlace;
+}
 
 }  // namespace slosh

@@ -62,6 +62,8 @@ void compare_slipping();
 void compare_warm();
 /// The same file: what comes and goes.
 void compare_coming();
+/// cut_worlds.cpp: bodies that are cut.
+void compare_cut();
 /// pressed_worlds.cpp: pressure projection; single steps of it.
 void compare_pressed();
 void compare_pressed_steps();

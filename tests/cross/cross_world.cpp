@@ -298,9 +298,11 @@ int main(int argc, char** argv) {
   if (quick || whole) compare_parting_pairs();
   if (quick || whole || part == "warm") compare_warm();
   if (quick || whole || part == "coming") compare_coming();
+  if (quick || whole || part == "cut") compare_cut();
   if (whole || part == "viscous") compare_viscous();
   if (whole || part == "pressed") compare_pressed();
-  if (part == "viscous" || part == "pressed" || part == "slipping" || part == "warm" || part == "coming")
+  if (part == "viscous" || part == "pressed" || part == "slipping" || part == "warm" || part == "coming" ||
+      part == "cut")
     return conclude();
   compare_single_steps();
   if (quick) return conclude();

@@ -177,5 +177,80 @@ TEST(Blades, ASavedWorldKnowsHowFarItCame) {
   EXPECT_TRUE(is_cut_through(other));
 }
 
+// A knife and a block in free space, the knife thrown at it.
+Kitchen thrown(double speed, double above) {
+  Kitchen kitchen;
+  const double half = 0.5 * kCutSpacing;
+  kitchen.add("knife", {-0.2, 0.0, -half}, {0.2, 0.1, half}, BodyMotion::kFree,
+              {{0, kBlock.y + above, 0}, {1, 0, 0, 0}});
+  kitchen.scene.bodies[0].blade = true;
+  kitchen.scene.bodies[0].twist.linear.y = -speed;
+  kitchen.add_butter(block_mesh(), 2, kResistance);
+  return kitchen;
+}
+
+struct Motion {
+  double momentum = 0.0, energy = 0.0;
+};
+Motion motion_in(const Kitchen& kitchen, const World& world) {
+  Motion sum;
+  const BodySnapshot state = state_in(world);
+  const std::vector<std::vector<CutPlane>> planes = world.cut_planes();
+  for (std::size_t b = 0; b < state.bodies.size(); ++b) {
+    if (state.bodies[b].gone) continue;
+    const SolidIntegrals solid = integrate(clipped(kitchen.solids[b], planes[b]));
+    const double mass = testing::kCutDensity * solid.volume;
+    const Twist& twist = state.bodies[b].twist;
+    const glm::dvec3 turning = glm::conjugate(state.bodies[b].pose.orientation) * twist.angular;
+    sum.momentum += mass * twist.linear.y;
+    sum.energy += 0.5 * mass * glm::dot(twist.linear, twist.linear) +
+                  0.5 * testing::kCutDensity * glm::dot(turning, solid.inertia * turning);
+  }
+  return sum;
+}
+
+// By energy: the force times the depth is what the two lose of the motion against each other.
+TEST(Blades, OneThatIsThrownComesAsDeepAsItsEnergyTakesIt) {
+  constexpr double kSpeed = 2.0;
+  const Kitchen kitchen = thrown(kSpeed, 0.0201);
+  World world = kitchen.world(kStep);
+  const Motion before = motion_in(kitchen, world);
+  double energy = before.energy;
+  for (int i = 0; i < 200; ++i) {
+    world.step({});
+    const Motion now = motion_in(kitchen, world);
+    EXPECT_NEAR(now.momentum, before.momentum, 1e-12);
+    EXPECT_LE(now.energy, energy * (1.0 + 1e-12));
+    energy = now.energy;
+  }
+  const double knife = kitchen.scene.bodies[0].mass.mass, block = kitchen.scene.bodies[1].mass.mass;
+  const double reduced = knife * block / (knife + block);
+  const double deep = 0.5 * reduced * kSpeed * kSpeed / (kResistance * 2.0 * kBlock.x);
+  const BodySnapshot state = state_in(world);
+  const double edge = state.bodies[0].pose.position.y - state.bodies[1].pose.position.y;
+  EXPECT_NEAR(kBlock.y - edge, deep, 0.03 * deep);
+  EXPECT_NEAR(state.bodies[0].twist.linear.y, state.bodies[1].twist.linear.y, 1e-9) << "it sticks there";
+}
+
+TEST(Blades, OneThatIsThrownHardComesOutOnTheOtherSide) {
+  for (const double speed : {5.0, 20.0}) {
+    const Kitchen kitchen = thrown(speed, 0.02);
+    World world = kitchen.world(kStep);
+    const Motion before = motion_in(kitchen, world);
+    double energy = before.energy;
+    for (int i = 0; i < 120; ++i) {
+      world.step({});
+      const Motion now = motion_in(kitchen, world);
+      EXPECT_NEAR(now.momentum, before.momentum, 1e-10);
+      EXPECT_LE(now.energy, energy * (1.0 + 1e-9));
+      energy = now.energy;
+    }
+    EXPECT_TRUE(is_cut_through(world)) << speed;
+    // The first and the last step of the way count as whole ones.
+    const double force = kResistance * 2.0 * kBlock.x, work = force * kBlock.y;
+    EXPECT_NEAR(before.energy - energy, work, 0.05 * work + 2.0 * force * speed * kStep) << speed;
+  }
+}
+
 }  // namespace
 }  // namespace slosh

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <random>
 
 #include "tests/support/contains.h"
 #include "tests/support/kitchen.h"
@@ -169,6 +170,27 @@ TEST(Cutting, ASavedWorldKnowsThePiecesAndItsStartIsWhole) {
   EXPECT_TRUE(world.cut_planes()[0].empty());
   for (int i = 0; i < 50; ++i) world.step({});
   EXPECT_EQ(world.hash(), whole);
+}
+
+TEST(Cutting, DamagedBytesAreRefusedOrRunAllTheSame) {
+  const Kitchen kitchen = tumbling_block(3);
+  World world = kitchen.world(), other = kitchen.world();
+  ASSERT_TRUE(world.cut(0, {{0.1, 0.0, 1.0}, 0.0}));
+  ASSERT_TRUE(world.cut(1, {{1.0, 0.0, 0.1}, 0.0}));
+  std::vector<std::uint8_t> saved;
+  ASSERT_TRUE(world.save(saved));
+  std::mt19937 random(1);
+  int taken = 0;
+  for (int i = 0; i < 200; ++i) {
+    std::vector<std::uint8_t> damaged = saved;
+    damaged[random() % damaged.size()] ^= static_cast<std::uint8_t>(1u << random() % 8);
+    if (!other.restore(damaged)) continue;
+    ++taken;
+    other.step({});
+    for (const BodyState& body : state_in(other).bodies) EXPECT_TRUE(std::isfinite(body.pose.position.x));
+  }
+  EXPECT_GT(taken, 20);
+  EXPECT_LT(taken, 200);
 }
 
 TEST(Cutting, WhatComesAgainIsWhole) {

@@ -6,9 +6,15 @@
 #include "sim/walls/surface_motion.h"
 
 namespace slosh {
+namespace {
+
+constexpr std::size_t kReadAhead = 64;  // particles
+
+}  // namespace
 
 BodySurface::BodySurface(std::vector<SurfaceParticle> particles) : local_(std::move(particles)) {
   keys_.resize(local_.size());
+  from_.resize(local_.size());
   placed_.resize(local_.size());
   velocity_.resize(local_.size());
   sorted_.resize(local_.size());
@@ -24,37 +30,46 @@ void BodySurface::replace(std::size_t first, std::span<const SurfaceParticle> pa
 
 void BodySurface::place(const PassContext& context, std::span<const RigidBody> bodies) {
   int current = -1;
+  bool away = false;
   SurfaceMotion motion;
+  std::size_t count = 0;  // of those that are not away: no others are sorted
   for (std::size_t i = 0; i < local_.size(); ++i) {
     if (local_[i].body != current) {
       current = local_[i].body;
       motion = surface_motion(bodies[current]);
+      away = bodies[current].gone && is_away(bodies[current].mesh_pose());
     }
+    if (away || is_nobody(local_[i])) continue;
     const glm::vec3 p = motion.place(local_[i].position);
-    placed_[i] = p;
-    velocity_[i] = motion.velocity_at(p);
+    from_[count] = static_cast<std::uint32_t>(i);
+    placed_[count] = p;
+    velocity_[count] = motion.velocity_at(p);
     // Outside the domain there is no fluid to meet.
-    keys_[i] = context.grid.contains(p.x, p.y, p.z) ? context.grid.cell_of(p.x, p.y, p.z)
-                                                    : context.grid.retired_key();
+    keys_[count++] = context.grid.contains(p.x, p.y, p.z) ? context.grid.cell_of(p.x, p.y, p.z)
+                                                          : context.grid.retired_key();
   }
-  sorter_.sort(keys_.data(), keys_.size(), context.grid.retired_key());
+  sorter_.sort(keys_.data(), count, context.grid.retired_key());
   const std::uint32_t* order = sorter_.order();
-  for (std::size_t i = 0; i < local_.size(); ++i) {
+  for (std::size_t i = 0; i < count; ++i) {
     const std::uint32_t from = order[i];
+    const SurfaceParticle& local = local_[from_[from]];
     sorted_.x[i] = placed_[from].x;
     sorted_.y[i] = placed_[from].y;
     sorted_.z[i] = placed_[from].z;
     sorted_.vx[i] = velocity_[from].x;
     sorted_.vy[i] = velocity_[from].y;
     sorted_.vz[i] = velocity_[from].z;
-    sorted_.pressure[i] = local_[from].pressure;
-    sorted_.volume[i] = local_[from].volume;
-    sorted_.viscosity[i] = local_[from].viscosity;
-    sorted_.reach[i] = local_[from].reach;
-    sorted_.body[i] = local_[from].body;
-    if (!sorted_.mirror.empty()) sorted_.mirror.set(i, local_[from].mirror);
+    sorted_.pressure[i] = local.pressure;
+    sorted_.volume[i] = local.volume;
+    sorted_.viscosity[i] = local.viscosity;
+    sorted_.reach[i] = local.reach;
+    sorted_.body[i] = local.body;
+    if (!sorted_.mirror.empty()) sorted_.mirror.set(i, local.mirror);
   }
-  sorted_.index.rebuild(context.grid, keys_.data(), keys_.size());
+  // What was there before must not be met by who reads a few at a time.
+  for (std::size_t i = count; i < std::min(count + kReadAhead, local_.size()); ++i)
+    sorted_.x[i] = sorted_.y[i] = sorted_.z[i] = kNobodysPlace;
+  sorted_.index.rebuild(context.grid, keys_.data(), count);
 }
 
 void BodySurface::set_velocities(std::span<const RigidBody> bodies, std::span<const Twist> twists) {
