@@ -131,6 +131,33 @@ TEST(Cutting, ThePartWithTheGripKeepsTheBodysNumber) {
   EXPECT_TRUE(world.cut(0, {{1, 0, 0}, 0.06}));
 }
 
+TEST(Cutting, AJointHoldsThePartThatItIsOnWhereItDid) {
+  const glm::dvec3 pivot(0.0, 0.0, 0.2);
+  Kitchen kitchen;
+  kitchen.scene.gravity = {0.0, -9.81, 0.0};
+  kitchen.add_butter(testing::box_mesh(-kHalf, kHalf), 2);
+  Joint hinge;
+  hinge.name = "hinge";
+  hinge.body = 0;
+  hinge.pose = {pivot, glm::angleAxis(1.5707963267948966, glm::dvec3(0, 0, 1))};  // about x
+  kitchen.scene.joints.push_back(hinge);
+  World world = kitchen.world();
+  const auto off = [&] {
+    return glm::distance(transform_point(state_in(world).bodies[0].pose, pivot), pivot);
+  };
+  for (int i = 0; i < 200; ++i) world.step({});
+  ASSERT_TRUE(world.cut(0, {{0.0, 0.3, 1.0}, 0.1}));
+  EXPECT_LT(world.cut_planes()[0].front().distance(pivot), 0.0);
+  const double before = state_in(world).joints[0].position;
+  EXPECT_LT(off(), 1e-9);
+  for (int i = 0; i < 300; ++i) {
+    world.step({});
+    EXPECT_LT(off(), 1e-9);
+  }
+  EXPECT_GT(std::abs(state_in(world).joints[0].position - before), 0.1) << "it swings on";
+  EXPECT_LT(state_in(world).bodies[1].pose.position.y, -0.3) << "the other falls";
+}
+
 TEST(Cutting, PartsStandOnTheTableWhereTheWholeStood) {
   Kitchen kitchen;
   kitchen.scene.gravity = {0.0, -9.81, 0.0};
