@@ -1,7 +1,9 @@
 // Bodies that are cut while a world runs.
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <optional>
+#include <system_error>
 
 #include "sim/math/format.h"
 #include "sim/world_parts.h"
@@ -46,16 +48,22 @@ Result<CutPlane> World::Impl::side_that_stays(std::size_t body, const CutPlane& 
   return outer ? plane.reversed() : plane;
 }
 
+namespace {
+
+Error no_room(const std::string& name, std::size_t particles, std::size_t room) {
+  return {"'" + name + "'",
+          format("would have %zu particles in one piece, and there is room for %zu", particles, room),
+          "Cut elsewhere"};
+}
+
+}  // namespace
+
 Result<std::vector<SurfaceParticle>> World::Impl::particles_of(std::size_t body,
                                                                const PieceShape& shape) const {
   std::vector<SurfaceParticle> particles =
       particles_of_piece(scene, plan(), drags_from, body, shape.surface, shape.field.view());
   const std::size_t room = piece_slots[body].count;
-  if (particles.size() > room)
-    return Error{
-        "'" + scene.bodies[body].name + "'",
-        format("would have %zu particles in one piece, and there is room for %zu", particles.size(), room),
-        "Cut elsewhere"};
+  if (particles.size() > room) return no_room(scene.bodies[body].name, particles.size(), room);
   particles.resize(room, nobody(body));
   return particles;
 }
@@ -64,6 +72,43 @@ void World::Impl::reshape(std::size_t body, const PieceShape& shape,
                           std::span<const SurfaceParticle> particles, const glm::dvec3& recentred) {
   if (plan().has_fluid())
     engine->reshape({body, piece_slots[body].first, particles, &shape.field, recentred});
+}
+
+World::Impl::CutOrder World::Impl::order(std::size_t body, const CutPlane& plane) const {
+  const auto index = static_cast<int>(body);
+  CutOrder order;
+  order.body = body;
+  order.plane = plane;
+  order.planes = bodies.cuts().planes(index);
+  order.scene.bodies = scene.bodies;
+  order.scene.support_ratio = scene.support_ratio;
+  order.plan = plan();
+  order.drags = drags_from;
+  order.held = std::ranges::any_of(scene.grips, [&](const Grip& grip) { return grip.body == index; }) ||
+               std::ranges::any_of(scene.joints, [&](const Joint& joint) {
+                 return joint.body == index || joint.other == index;
+               });
+  return order;
+}
+
+Result<World::Impl::Parts> World::Impl::parts(const CutBodies& cuts, const CutOrder& order) {
+  const auto within = [&](const CutPlane& side) {
+    std::vector<CutPlane> planes = order.planes;
+    planes.push_back(side);
+    return cuts.shape(static_cast<int>(order.body), std::move(planes));
+  };
+  Result<PieceShape> rest = within(order.plane), off = within(order.plane.reversed());
+  if (!rest) return rest.error();
+  if (!off) return off.error();
+  Parts parts{std::move(rest.value()), std::move(off.value()), {}, {}};
+  if (!order.held && parts.off.mass.mass > parts.rest.mass.mass) std::swap(parts.rest, parts.off);
+  const auto particles = [&](const PieceShape& shape) {
+    return particles_of_piece(order.scene, order.plan, order.drags, order.body, shape.surface,
+                              shape.field.view());
+  };
+  parts.of_rest = particles(parts.rest);
+  parts.of_off = particles(parts.off);
+  return parts;
 }
 
 Result<std::size_t> World::Impl::cut_body(std::size_t body, CutPlane plane) {
@@ -83,38 +128,30 @@ Result<std::size_t> World::Impl::cut_body(std::size_t body, CutPlane plane) {
   if (free == family.end())
     return Error{where, format("has all its %zu pieces in the world", family.size()),
                  "Give it more pieces in the scene"};
-  const int piece = *free;
+  const auto piece = static_cast<std::size_t>(*free);
   const Result<CutPlane> stays = side_that_stays(body, plane);
   if (!stays) return stays.error();
   plane = stays.value();
-  const auto within = [&](int of, const CutPlane& side) {
-    std::vector<CutPlane> planes = cuts.planes(index);
-    planes.push_back(side);
-    return cuts.shape(of, std::move(planes));
-  };
-  Result<PieceShape> rest = within(index, plane);
-  if (!rest) return rest.error();
-  Result<PieceShape> off = within(piece, plane.reversed());
-  if (!off) return off.error();
-  const auto is_of = [&](const auto& thing) { return thing.body == index; };
-  const bool held =
-      std::ranges::any_of(scene.grips, is_of) || std::ranges::any_of(scene.joints, [&](const Joint& joint) {
-        return joint.body == index || joint.other == index;
-      });
-  if (!held && off.value().mass.mass > rest.value().mass.mass) {
-    std::swap(rest.value(), off.value());
-    plane = plane.reversed();
+  const bool known = cut_ahead && cut_ahead->body == body && cut_ahead->plane == plane &&
+                     cut_ahead->planes == cuts.planes(index);
+  Result<Parts> made = known ? cut_ahead->parts.get() : parts(cuts, order(body, plane));
+  if (known) cut_ahead.reset();
+  if (!made) return made.error();
+  Parts& two = made.value();
+  for (const auto& [each, particles] : {std::pair(body, &two.of_rest), std::pair(piece, &two.of_off)}) {
+    const std::size_t room = piece_slots[each].count;
+    if (particles->size() > room) return no_room(scene.bodies[body].name, particles->size(), room);
+    particles->resize(room, nobody(each));
+    for (SurfaceParticle& particle : *particles) particle.body = static_cast<std::uint16_t>(each);
   }
-  Result<std::vector<SurfaceParticle>> of_rest = particles_of(body, rest.value());
-  if (!of_rest) return of_rest.error();
-  Result<std::vector<SurfaceParticle>> of_piece = particles_of(static_cast<std::size_t>(piece), off.value());
-  if (!of_piece) return of_piece.error();
+  // Its own side, whichever way the plane came.
+  const CutPlane outer = two.rest.planes.back();
   const glm::dvec3 center = whole.position;
-  bodies.part(index, rest.value(), piece, off.value(), plane);
-  reshape(body, rest.value(), of_rest.value(), center - bodies.bodies()[body].position);
-  reshape(static_cast<std::size_t>(piece), off.value(), of_piece.value(), glm::dvec3(0.0));
-  wrenches[static_cast<std::size_t>(piece)] = {};
-  return static_cast<std::size_t>(piece);
+  bodies.part(index, two.rest, *free, two.off, outer);
+  reshape(body, two.rest, two.of_rest, center - bodies.bodies()[body].position);
+  reshape(piece, two.off, two.of_off, glm::dvec3(0.0));
+  wrenches[piece] = {};
+  return piece;
 }
 
 Result<std::vector<World::Impl::Reshaping>> World::Impl::shapes_of(SavedState& state) const {
@@ -157,6 +194,39 @@ void World::Impl::cut_through() {
       bodies.end_cut(*incision, static_cast<int>(piece.value()));
     else
       bodies.refuse(*incision);
+  }
+  plan_cut();
+}
+
+void World::Impl::plan_cut() {
+  const std::vector<Incision>& incisions = bodies.blades().kept();
+  const auto is_planned = [&](const Incision& incision) {
+    return incision.stage == CutStage::kCutting &&
+           static_cast<std::size_t>(incision.body) == cut_ahead->body &&
+           (incision.plane == cut_ahead->plane || incision.plane.reversed() == cut_ahead->plane) &&
+           bodies.cuts().planes(incision.body) == cut_ahead->planes;
+  };
+  if (cut_ahead) {
+    const bool over = cut_ahead->parts.wait_for(std::chrono::seconds(0)) == std::future_status::ready;
+    if (!over || std::ranges::any_of(incisions, is_planned)) return;
+    cut_ahead.reset();  // its blade was drawn back
+  }
+  for (const Incision& incision : incisions) {
+    const auto body = static_cast<std::size_t>(incision.body);
+    if (incision.stage != CutStage::kCutting) continue;
+    const Result<CutPlane> stays = side_that_stays(body, incision.plane);
+    if (!stays) continue;
+    CutOrder ordered = order(body, stays.value());
+    Ahead next{body, ordered.plane, ordered.planes, {}};
+    try {
+      next.parts = std::async(std::launch::async, [&cuts = bodies.cuts(), ordered = std::move(ordered)] {
+        return parts(cuts, ordered);
+      });
+    } catch (const std::system_error&) {
+      return;  // no thread is to be had: it is found when it is needed
+    }
+    cut_ahead = std::move(next);
+    return;
   }
 }
 

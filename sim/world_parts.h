@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <future>
 #include <memory>
 #include <optional>
 #include <span>
@@ -45,9 +46,29 @@ struct World::Impl {
     return step.elapsed == 0.0 && tick % static_cast<std::uint64_t>(plan().heat_steps) == 0;
   }
   Result<bool> bring_body(std::size_t body);
+  /// What the two parts of a cut have: all that takes long of it.
+  struct Parts {
+    PieceShape rest, off;
+    std::vector<SurfaceParticle> of_rest, of_off;
+  };
+  /// What parts() works with, its own.
+  struct CutOrder {
+    std::size_t body = 0;
+    CutPlane plane;
+    std::vector<CutPlane> planes;  // of the body before the cut
+    Scene scene;                   // bodies and support ratio alone
+    Plan plan;
+    DragLayer drags = DragLayer::kBehind;
+    bool held = false;  // the part within the plane keeps the number, even where it is the smaller one
+  };
+  static Result<Parts> parts(const CutBodies& cuts, const CutOrder& order);
+  CutOrder order(std::size_t body, const CutPlane& plane) const;
   Result<std::size_t> cut_body(std::size_t body, CutPlane plane);
   /// At a step's end: bodies that blades have gone through.
   void cut_through();
+  /// What a body will be cut into that a blade is in is found meanwhile on another thread, since the plane is
+  /// known: so that no step waits for it.
+  void plan_cut();
   /// Which side of the plane keeps the body's number. Error: grips and joints are on both.
   Result<CutPlane> side_that_stays(std::size_t body, const CutPlane& plane) const;
   /// The particles of a piece, as many as there is room for. Error: they are more.
@@ -99,6 +120,13 @@ struct World::Impl {
   struct Slots {
     std::size_t first = 0, count = 0;
   };
+  struct Ahead {
+    std::size_t body = 0;
+    CutPlane plane;
+    std::vector<CutPlane> planes;
+    std::future<Result<Parts>> parts;  // of bodies' CutBodies: before those are gone it is over
+  };
+  std::optional<Ahead> cut_ahead;
   DragLayer drags_from = DragLayer::kBehind;  // of the scene as it started
   std::vector<Slots> piece_slots;             // one a body, where any may be cut
   std::vector<FillingIds> fillings;           // one a fluid volume, and where its particles come
