@@ -12,11 +12,11 @@
 #include <string_view>
 #include <vector>
 
+#include "scenes/body.h"
 #include "scenes/task.h"
 #include "sim/math/distance_field.h"
 #include "sim/math/pose.h"
 #include "sim/math/result.h"
-#include "sim/math/texture_sampling.h"
 
 namespace slosh {
 
@@ -27,53 +27,6 @@ struct TriangleMesh {
   std::vector<glm::vec3> normals;     ///< unit, one a position (smooth or flat as the file has them)
   std::vector<glm::uvec3> triangles;  ///< counter-clockwise seen from outside
   std::vector<glm::vec2> texcoords;   ///< one a position, v downward (as glTF); empty where no texture is
-};
-
-/// A picture for textures as its file has it: a PNG or a JPEG (images/decode.h unpacks it).
-struct SceneImage {
-  std::string name;
-  std::vector<std::uint8_t> bytes;  ///< at most kMaxImageBytes
-};
-
-inline constexpr std::size_t kMaxImageBytes = 64u << 20;  ///< of one image, packed
-inline constexpr std::size_t kMaxImages = 256;            ///< of one scene
-
-/// A picture laid over a surface.
-struct TextureMap {
-  int image = -1;  ///< index into Scene::images, −1 = none
-  TextureSampling sampling;
-
-  bool operator==(const TextureMap&) const = default;
-};
-
-/// glTF's five, each multiplied with the number of the same name.
-struct MaterialMaps {
-  TextureMap base_color;          ///< sRGB; alpha counts where Material::alpha_cutoff or opacity asks for it
-  TextureMap metallic_roughness;  ///< linear: green roughness, blue metallic
-  TextureMap normal;              ///< linear: tangent space, y towards smaller v
-  TextureMap occlusion;           ///< linear: red
-  TextureMap emissive;            ///< sRGB
-  float normal_scale = 1.0f;      ///< ±10
-  float occlusion_strength = 1.0f;  ///< 0–1
-
-  bool any() const {
-    return base_color.image >= 0 || metallic_roughness.image >= 0 || normal.image >= 0 ||
-           occlusion.image >= 0 || emissive.image >= 0;
-  }
-  bool operator==(const MaterialMaps&) const = default;
-};
-
-/// How a surface looks (linear sRGB primaries, glTF metallic-roughness).
-struct Material {
-  glm::vec3 base_color{0.7f};
-  float metallic = 0.0f;      ///< 0–1
-  float roughness = 0.6f;     ///< 0–1
-  float opacity = 1.0f;       ///< 1 opaque; below 1 drawn blended (a glass)
-  glm::vec3 emissive{0.0f};   ///< 0–100, scene-linear: light that it gives off
-  float alpha_cutoff = 0.0f;  ///< 0–1: where the base colour map's alpha is below it there is nothing
-  MaterialMaps maps{};
-
-  bool operator==(const Material&) const = default;
 };
 
 /// Fluid::scattering where nothing is said of it: what hides all that is a centimetre down (1/m) was given a
@@ -141,12 +94,6 @@ struct FluidVolume {
 };
 inline constexpr int kMaxFillings = 1000;
 
-struct MassProperties {
-  double mass = 0.0;               ///< kg, > 0
-  glm::dvec3 center_of_mass{0.0};  ///< m, in the body's mesh frame
-  glm::dmat3 inertia{0.0};         ///< kg·m², about the centre of mass, mesh axes
-};
-
 /// Which particle model a scene runs. sim/pressure/README.md compares them.
 /// The numbers are the wire's. 0 was `consistent`, which `corrected` took the place of.
 enum class ParticleModel : std::uint8_t {
@@ -177,58 +124,6 @@ inline std::optional<ParticleModel> model_named(std::string_view name) {
 }
 /// What the model was called that is no more.
 inline constexpr std::string_view kGoneModel = "consistent";
-
-/// A body's viscosity where it is that of whatever fluid touches it, so that Eq 9's mean is the fluid's own
-/// and the fluid sticks to the body.
-inline constexpr double kFluidsViscosity = -1.0;
-/// A body's viscosity where nothing drags at it: fluid slides along it freely, in every model. (0 is one side
-/// of Eq 9's mean, and halves the shear.)
-inline constexpr double kFreeSlip = -2.0;
-
-/// A driven body goes where Body::keys say, whatever acts on it.
-enum class BodyMotion : std::uint8_t { kFixed, kFree, kDriven };
-constexpr bool moves(BodyMotion motion) {
-  return motion != BodyMotion::kFixed;
-}
-
-struct PoseKey {
-  double time = 0.0;  ///< s, rising
-  Pose pose;          ///< world
-};
-
-/// A rigid body made of particles on its surface (paper, section 4.1), or one particle (section 3).
-struct Body {
-  std::string name;
-  int mesh =
-      -1;  ///< index into Scene::meshes, closed and outward-facing; of a point probe only its look, or −1
-  BodyMotion motion = BodyMotion::kFixed;
-  bool point_probe = false;  ///< one particle that behaves as fluid (Eq 8), without rotation
-  Pose pose;                 ///< initial pose of the mesh frame
-  Twist twist;               ///< initial twist of the centre of mass
-  MassProperties mass;       ///< meaningful when free
-  double particle_density =
-      0.0;  ///< kg/m³: the constant density of its particles (section 4.1); 0 = chosen by the plan
-  double dynamic_viscosity =
-      0.0;                ///< Pa·s, >= 0: its side of Eq 9's (μᵢ + μⱼ)/2; or kFluidsViscosity, or kFreeSlip
-  double friction = 0.4;  ///< Coulomb, with the smaller of two touching bodies' values used
-  double restitution = 0.0;  ///< 0–1
-  bool measured = false;     ///< report the fluid's wrench on it even though it is fixed
-  Material material;
-  std::optional<double> temperature{};  ///< °C, kept by all of it whatever it touches; none: no heat passes
-  std::vector<PoseKey> keys;  ///< of the mesh frame when driven, the first at 0 s; after the last it stands
-  bool repeats = false;       ///< the keys begin again after the last, which is where the first is
-  bool starts_away = false;   ///< it moves, and is not in the world before World::appear
-  int pieces{};               ///< 2–kMaxPieces: by cuts it may become so many bodies; 0 = nothing cuts it
-  int piece_of{-1};           ///< index into Scene::bodies: by a cut it comes off that one; −1 = no piece
-  double cut_n_m{};           ///< N/m, 0–10⁶: a blade moves on in it from this for each metre inside it
-  bool blade{};               ///< it cuts with its edge (sim/bodies/blades.h), which is along x of its mesh
-                              ///< at the lowest y, in the plane z = 0, towards −y
-};
-inline constexpr int kMaxPieces = 16;
-/// Whether cuts make anything of it: it may be cut, or comes off one that may.
-inline bool is_cut(const Body& body) {
-  return body.pieces > 1 || body.piece_of >= 0;
-}
 
 /// A mesh that is only looked at.
 struct Picture {
