@@ -59,12 +59,14 @@ struct MeshLook {
 class MeshSink {
  public:
   virtual ~MeshSink() = default;
-  /// Copies a mesh for good. One normal a position; triangles counter-clockwise seen from outside; a triangle
+  /// Copies a mesh. One normal a position; triangles counter-clockwise seen from outside; a triangle
   /// with an index out of range is left out. `texcoords`: one a position, v downward, or empty: then maps of
   /// its looks show their corner.
   virtual MeshHandle add_mesh(std::span<const glm::vec3> positions, std::span<const glm::vec3> normals,
                               std::span<const glm::uvec3> triangles,
                               std::span<const glm::vec2> texcoords = {}) = 0;
+  /// Of no frame from now on; the handle is never given again.
+  virtual void remove_mesh(MeshHandle mesh) = 0;
   /// Copies a texture for good. Sizes out of range or too few pixels give kNoTexture.
   virtual TextureHandle add_texture(const TextureImage& image) = 0;
 };

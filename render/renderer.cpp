@@ -63,6 +63,10 @@ MeshHandle Renderer::add_mesh(std::span<const glm::vec3> positions, std::span<co
   return parts_->meshes.add(positions, normals, triangles, texcoords);
 }
 
+void Renderer::remove_mesh(MeshHandle mesh) {
+  parts_->meshes.remove(mesh);
+}
+
 TextureHandle Renderer::add_texture(const TextureImage& image) {
   return parts_->textures.add(image);
 }

@@ -153,6 +153,7 @@ class Renderer : public MeshSink {
   MeshHandle add_mesh(std::span<const glm::vec3> positions, std::span<const glm::vec3> normals,
                       std::span<const glm::uvec3> triangles,
                       std::span<const glm::vec2> texcoords = {}) override;
+  void remove_mesh(MeshHandle mesh) override;
   TextureHandle add_texture(const TextureImage& image) override;
 
   /// What all pictures of a moment share, once: shadows that reach all of `views` (Frame::view is passed

@@ -151,6 +151,7 @@ Result<std::size_t> World::Impl::cut_body(std::size_t body, CutPlane plane) {
   reshape(body, two.rest, two.of_rest, center - bodies.bodies()[body].position);
   reshape(piece, two.off, two.of_off, glm::dvec3(0.0));
   wrenches[piece] = {};
+  cuts_told = cuts.told(tick);
   return piece;
 }
 
@@ -185,6 +186,7 @@ void World::Impl::make_whole(std::size_t body) {
   const Result<std::vector<SurfaceParticle>> particles = particles_of(body, whole.value());
   bodies.reshape(index, whole.value());
   reshape(body, whole.value(), particles.value(), glm::dvec3(0.0));
+  cuts_told = bodies.cuts().told(tick);
 }
 
 void World::Impl::cut_through() {

@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "sim/math/body_cuts.h"
 #include "sim/math/pose.h"
 #include "sim/math/shared_particles.h"
 
@@ -72,6 +73,7 @@ struct BodySnapshot {
   std::vector<GripState> grips;
   std::vector<JointState> joints;  ///< one a joint of the scene
   std::int64_t waiting = 0;        ///< fluid particles out of the world that are neither spilled nor lost
+  std::shared_ptr<const BodyCuts> cuts{};  ///< null: every body is whole. Another one after each cut
 };
 
 /// Brings particles from a GPU, on the calling thread, which waits: as Snapshot has them.

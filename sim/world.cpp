@@ -24,6 +24,7 @@ World::World(const Scene& scene, const SampledScene& sampled, Plan plan, WorldOp
 }
 Result<World> make_world(const Scene& scene, const SampledScene& sampled, Plan plan, WorldOptions options) {
   if (const std::optional<Error> error = refuse_endless(scene, plan)) return *error;
+  if (const std::optional<Error> error = check_cut_bodies(scene)) return *error;
   auto impl = std::make_unique<World::Impl>(scene, sampled, std::move(plan), options);
   if (const std::optional<Error> error = impl->start(sampled)) return *error;
   return World(std::move(impl));
@@ -41,9 +42,9 @@ void World::step(std::span<const HandleInput> handles) {
     w.run(w.sub_step(i));
   }
   if (w.plan().has(PassId::kJoints)) w.bodies.change_joints(w.plan().time_step);
+  ++w.tick;
   if (w.bodies.blades().any()) w.cut_through();
   w.times.total = whole.lap();
-  ++w.tick;
 }
 
 double World::settle(double seconds, std::span<const HandleInput> handles, bool (*stopped)(),
@@ -123,6 +124,7 @@ void World::fill(BodySnapshot& out) const {
   }
   impl_->bodies.joints().fill(bodies, out.joints);
   out.waiting = impl_->waiting;
+  out.cuts = impl_->cuts_told;
 }
 
 void World::fill(Snapshot& out, bool with_shell) const {
@@ -260,6 +262,7 @@ Result<bool> World::restore(std::span<const std::uint8_t> saved) {
     w.reshape(each.body, each.shape, each.particles, glm::dvec3(0.0));
   }
   w.bodies.restore(std::move(state.incisions));
+  w.cuts_told = w.bodies.cuts().told(state.tick);
   if (w.plan().has(PassId::kBonds)) w.engine->restore_bonds(state.bonds);
   std::fill(w.found.begin(), w.found.end(), Wrench{});
   std::fill(w.drag_matrices.begin(), w.drag_matrices.end(), Matrix6{});

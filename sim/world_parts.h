@@ -127,6 +127,7 @@ struct World::Impl {
     std::future<Result<Parts>> parts;  // of bodies' CutBodies: before those are gone it is over
   };
   std::optional<Ahead> cut_ahead;
+  std::shared_ptr<const BodyCuts> cuts_told;  // BodySnapshot::cuts
   DragLayer drags_from = DragLayer::kBehind;  // of the scene as it started
   std::vector<Slots> piece_slots;             // one a body, where any may be cut
   std::vector<FillingIds> fillings;           // one a fluid volume, and where its particles come

@@ -8,6 +8,7 @@
 #include "net/grip_start.h"
 #include "net/random.h"
 #include "net/site.h"
+#include "net/wire/cuts.h"
 
 namespace slosh {
 namespace {
@@ -219,6 +220,7 @@ void Server::turn() {
   mailbox_.run_all();
   if (now() - checked_ns_ >= kCheckEvery) check_patience();
   states_.send_bodies(seats_, now());
+  send_cuts();
   snapshots_.send(now());
   snapshots_.judge(now());
   if (roster_dirty_ && now() - roster_sent_ns_ >= kRosterEvery) {
@@ -237,6 +239,15 @@ void Server::send_task() {
   if (lines == task_told_) return;
   task_told_ = lines;
   send_all(task_message(lines), false, nullptr, wire::kTasks);
+}
+
+void Server::send_cuts() {
+  const BodyMessage& newest = states_.newest();
+  if (newest.bodies.cuts == cuts_told_) return;
+  cuts_told_ = newest.bodies.cuts;
+  cuts_run_ = newest.run;
+  // Of a run that begins all bodies are whole.
+  if (cuts_told_) send_all(wire::to_message(*cuts_told_, cuts_run_), false, nullptr, wire::kCuts);
 }
 
 void Server::send_roster() {

@@ -163,6 +163,7 @@ class Server final : public EndpointEvents, public HostTap {
   void hide_hands(const Seat& seat);
   void send_roster();
   void send_task();
+  void send_cuts();
   void roster_changed() { roster_dirty_ = state_dirty_ = true; }
 
   // server_control.cpp
@@ -241,6 +242,8 @@ class Server final : public EndpointEvents, public HostTap {
   bool roster_dirty_ = false;
   std::int64_t roster_sent_ns_ = 0;
   TaskLines task_told_;
+  std::shared_ptr<const BodyCuts> cuts_told_;
+  std::uint32_t cuts_run_ = 0;  // that they are of
   std::int64_t task_asked_ns_ = 0;
   std::int64_t checked_ns_ = 0;
   bool quit_asked_ = false;

@@ -42,6 +42,8 @@ class StateSender {
   void forward(const Peer& from, const wire::PoseSample& sample, std::int64_t now_ns);
   /// The others see these hands let go.
   void let_go(std::uint32_t seat, const wire::Hands& hands);
+  /// What was sent last, or will be.
+  const BodyMessage& newest() const { return channel_.bodies().front(); }
   std::uint64_t fluid_models_sent() const { return fluid_models_sent_; }
 
  private:

@@ -58,6 +58,19 @@ struct ComingScene {
   std::vector<JointChanges> joint_changes;      ///< one a joint
 };
 
+/// How a body is cut, or cuts.
+struct BodyCutting {
+  int pieces = 0, piece_of = -1;
+  double cut_n_m = 0.0;
+  bool blade = false;
+};
+
+/// The same of a scene in which bodies may be cut.
+struct CutScene {
+  ComingScene coming;
+  std::vector<BodyCutting> cutting;  ///< one a body
+};
+
 constexpr double kNoLimit = 1e300;  ///< stands for none: an infinity is no number here
 inline double finite_limit(double limit) {
   return std::clamp(limit, -kNoLimit, kNoLimit);
@@ -92,7 +105,7 @@ void visit(V& v, Heat& m) {
 
 inline constexpr std::array kGoalKindNames{"mass",   "temperature", "set",  "spread", "evenness",
                                            "mixing", "level",       "tilt", "speed",  "distance",
-                                           "force",  "all",         "any",  "not"};
+                                           "force",  "all",         "any",  "not",    "pieces"};
 
 /// Whether an index names one of `count`.
 inline bool below(int index, std::size_t count) {
@@ -109,6 +122,7 @@ inline bool has_thing(const Scene& scene, const Goal& goal) {
       return below(goal.thing, scene.gauges.size());
     case GoalKind::kTilt:
     case GoalKind::kSpeed:
+    case GoalKind::kPieces:
       return below(goal.thing, scene.bodies.size());
     case GoalKind::kDistance:
       return below(goal.thing, scene.bodies.size()) && below(goal.other, scene.bodies.size());
@@ -248,6 +262,39 @@ void visit(V& v, ComingScene& m) {
                  });
   v.list_as_long("joint_changes", m.joint_changes, "joints", m.acting.joints.size(),
                  [](auto& each, JointChanges& changes) { visit(each, changes); });
+}
+
+/// What World's cuts count on: a free body of a small mesh, whose pieces have the same one and come behind
+/// it.
+inline bool can_be_cut(const Scene& scene, std::size_t index, const BodyCutting& cutting) {
+  if (cutting.pieces == 0 && cutting.piece_of < 0) return true;
+  const Body& body = scene.bodies[index];
+  if (body.motion != BodyMotion::kFree || body.point_probe || !below(body.mesh, scene.meshes.size()))
+    return false;
+  if (cutting.piece_of < 0) return cutting.pieces >= 2;
+  return cutting.pieces == 0 && below(cutting.piece_of, index) &&
+         scene.bodies[static_cast<std::size_t>(cutting.piece_of)].mesh == body.mesh;
+}
+
+template <class V>
+void visit(V& v, CutScene& m) {
+  visit(v, m.coming);
+  const Scene& scene = m.coming.acting.textured.looked.settled.measured.packed.scene;
+  std::size_t at = 0;
+  v.list_as_long("cutting", m.cutting, "bodies", scene.bodies.size(),
+                 [&scene, &at](auto& each, BodyCutting& body) {
+                   auto pieces = static_cast<std::uint32_t>(body.pieces);
+                   each.natural("pieces", pieces, 0, kMaxPieces);
+                   body.pieces = static_cast<int>(pieces);
+                   each.index("piece_of", body.piece_of, "bodies", scene.bodies.size(), true);
+                   each.real64("cut_n_m", body.cut_n_m, 0.0, 1e6);
+                   each.flag("blade", body.blade);
+                   if (at < scene.bodies.size()) {
+                     each.rule("pieces", can_be_cut(scene, at, body), "is of a body that cannot be cut");
+                     each.rule("blade", !body.blade || moves(scene.bodies[at].motion), "is a fixed body's");
+                   }
+                   ++at;
+                 });
 }
 
 }  // namespace slosh::wire

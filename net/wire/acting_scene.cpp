@@ -25,6 +25,7 @@ std::string name_of(const Scene& scene, const Goal& goal) {
       return scene.grips[thing].name;
     case GoalKind::kTilt:
     case GoalKind::kSpeed:
+    case GoalKind::kPieces:
     case GoalKind::kDistance:
       return scene.bodies[thing].name;
     default:
@@ -41,8 +42,7 @@ bool unflatten(const std::vector<SentGoal>& goals, const Scene& scene, std::size
   goal.at_least = open_limit(goal.at_least);
   goal.at_most = open_limit(goal.at_most);
   goal.name = name_of(scene, goal);
-  const bool made_of_parts = goal.kind >= GoalKind::kAll;
-  if (made_of_parts ? sent.parts == 0 : sent.parts > 0) return false;
+  if (of_parts(goal.kind) ? sent.parts == 0 : sent.parts > 0) return false;
   if (goal.kind == GoalKind::kNot && sent.parts != 1) return false;
   goal.parts.resize(sent.parts);
   for (Goal& part : goal.parts)
@@ -50,9 +50,25 @@ bool unflatten(const std::vector<SentGoal>& goals, const Scene& scene, std::size
   return true;
 }
 
+std::string take_cutting(const std::vector<BodyCutting>& cutting, Scene& scene) {
+  for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
+    Body& body = scene.bodies[i];
+    body.pieces = cutting[i].pieces;
+    body.piece_of = cutting[i].piece_of;
+    body.cut_n_m = cutting[i].cut_n_m;
+    body.blade = cutting[i].blade;
+    if (body.piece_of >= 0 && scene.bodies[static_cast<std::size_t>(body.piece_of)].pieces == 0)
+      return "a piece is of a body that cannot be cut";
+  }
+  return {};
+}
+
 }  // namespace
 
-void fill_acting(const Scene& scene, ComingScene& coming) {
+void fill_acting(const Scene& scene, CutScene& cut) {
+  for (const Body& body : scene.bodies)
+    cut.cutting.push_back({body.pieces, body.piece_of, body.cut_n_m, body.blade});
+  ComingScene& coming = cut.coming;
   ActingScene& acting = coming.acting;
   for (const FluidVolume& volume : scene.fluid_volumes)
     coming.volumes.push_back({volume.starts_away, volume.fillings, volume.body});
@@ -76,7 +92,9 @@ void fill_acting(const Scene& scene, ComingScene& coming) {
   }
 }
 
-bool take_acting(ComingScene& coming, bool comes, Scene& scene) {
+std::string take_acting(CutScene& cut, bool comes, bool is_cut, Scene& scene) {
+  constexpr const char* kOddGoals = "goals of its task do not fit its steps";
+  ComingScene& coming = cut.coming;
   ActingScene& acting = coming.acting;
   for (std::size_t i = 0; i < scene.fluids.size(); ++i) {
     Heat& heat = scene.fluids[i].heat = std::move(acting.heats[i]);
@@ -91,9 +109,9 @@ bool take_acting(ComingScene& coming, bool comes, Scene& scene) {
   scene.task = std::move(acting.task);
   std::size_t at = 0;
   for (TaskStep& step : scene.task)
-    if (!unflatten(acting.goals, scene, at, step.until)) return false;
-  if (at != acting.goals.size()) return false;
-  if (!comes) return true;
+    if (!unflatten(acting.goals, scene, at, step.until)) return kOddGoals;
+  if (at != acting.goals.size()) return kOddGoals;
+  if (!comes) return {};
   for (std::size_t i = 0; i < scene.fluid_volumes.size(); ++i) {
     scene.fluid_volumes[i].starts_away = coming.volumes[i].starts_away;
     scene.fluid_volumes[i].fillings = coming.volumes[i].fillings;
@@ -112,7 +130,7 @@ bool take_acting(ComingScene& coming, bool comes, Scene& scene) {
     joint.starts_apart = changes.starts_apart;
     joint.meets = changes.meets;
   }
-  return true;
+  return is_cut ? take_cutting(cut.cutting, scene) : std::string();
 }
 
 }  // namespace slosh::wire

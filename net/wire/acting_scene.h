@@ -5,10 +5,10 @@
 
 namespace slosh::wire {
 
-/// Into `coming`, whose lists are empty.
-void fill_acting(const Scene& scene, ComingScene& coming);
-/// The reverse, into the scene that came with it; `comes`: with what is behind ActingScene. False where goals
-/// do not fit the steps.
-bool take_acting(ComingScene& coming, bool comes, Scene& scene);
+/// Into `cut`, whose lists are empty.
+void fill_acting(const Scene& scene, CutScene& cut);
+/// The reverse, into the scene that came with it; `comes`, `is_cut`: with what is behind ActingScene, behind
+/// ComingScene. Returns what does not fit, empty where all does.
+std::string take_acting(CutScene& cut, bool comes, bool is_cut, Scene& scene);
 
 }  // namespace slosh::wire

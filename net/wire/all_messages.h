@@ -6,6 +6,7 @@
 #include <string>
 #include <type_traits>
 
+#include "net/wire/cuts.h"
 #include "net/wire/fluid_wrench.h"
 #include "net/wire/messages.h"
 
@@ -16,7 +17,7 @@ struct MessageList {};
 
 using PeerControl = MessageList<Hello, GripRequest, WorldRequest, ParameterRequest, Bye>;
 using HostControl =
-    MessageList<Welcome, Refused, Roster, RosterChange, Answer, WorldInfo, Rights, Task, Notice, Bye>;
+    MessageList<Welcome, Refused, Roster, RosterChange, Answer, WorldInfo, Rights, Task, Cuts, Notice, Bye>;
 using PeerDatagrams = MessageList<Poses, ClockPing, SnapshotFeedback>;
 /// Without kSnapshotPiece, which net/codec reads.
 using HostDatagrams = MessageList<ClockPong, Bodies, Hands, FluidWrench>;

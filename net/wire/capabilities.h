@@ -45,10 +45,13 @@ constexpr Capabilities kTasks = 1u << 8;
 /// Task says which hands are to change their grips.
 constexpr Capabilities kTaskHands = 1u << 9;
 
+/// Cuts follows WorldInfo where bodies are cut, and each cut.
+constexpr Capabilities kCuts = 1u << 10;
+
 /// What this program understands; a peer's Hello asks for all of it.
 constexpr Capabilities kOurCapabilities = kRosterChanges | kFluidWrenches | kCouplings | kGripStiffnesses |
                                           kFeltHands | kNoTickAcks | kLinkRights | kHolds | kTasks |
-                                          kTaskHands;
+                                          kTaskHands | kCuts;
 /// For what has no other side: pages, tests of single messages, files.
 constexpr Capabilities kAllCapabilities = ~Capabilities{0};
 

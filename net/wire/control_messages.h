@@ -31,6 +31,7 @@ enum class ControlType : std::uint8_t {
   kRosterChange = 22,
   kRights = 23,
   kTask = 24,
+  kCuts = 25,
 };
 
 enum class Role : std::uint8_t { kParticipant, kSpectator };

@@ -2,6 +2,7 @@
 // same world. The limits are those of scenes/FIELDS.md, or a network's (limits.h) where these are tighter.
 #pragma once
 
+#include "net/wire/cuts.h"
 #include "net/wire/messages.h"
 #include "scenes/scene.h"
 
@@ -16,8 +17,6 @@ constexpr std::size_t kMaxPoseKeys = 1'000'000;
 constexpr std::size_t kMaxSentImages = 16u
                                        << 20;  ///< bytes of all that travel; pack_scene leaves others behind
 constexpr double kMaxDomain = 1e9;             ///< m
-constexpr double kMaxInertia = 1e18;           ///< kg·m²
-constexpr double kMaxMass = 1e9;               ///< kg
 constexpr double kMaxSettle = 60.0;            ///< s
 
 constexpr std::array kBodyMotionNames{"fixed", "free", "driven"};
@@ -51,12 +50,6 @@ struct TexturedScene {
   std::vector<Material>
       materials;  ///< one a body, then one a picture; the numbers of each are in the lists above
 };
-
-/// Positive definite, as a solid's is.
-inline bool can_turn(const glm::dmat3& inertia) {
-  const double minor = inertia[0][0] * inertia[1][1] - inertia[0][1] * inertia[1][0];
-  return inertia[0][0] > 0.0 && minor > 0.0 && glm::determinant(inertia) > 0.0;
-}
 
 template <class V>
 void visit_exact(V& v, Pose& m) {
@@ -100,15 +93,6 @@ void visit(V& v, Fluid& m) {
   v.real32("extinction_red", m.extinction.x, 0.0, 1e5);
   v.real32("extinction_green", m.extinction.y, 0.0, 1e5);
   v.real32("extinction_blue", m.extinction.z, 0.0, 1e5);
-}
-
-template <class V>
-void visit(V& v, MassProperties& m) {
-  v.real64("mass", m.mass, 0.0, kMaxMass);
-  v.vec3_exact("center_of_mass", m.center_of_mass, kMaxPosition);
-  v.vec3_exact("inertia_x", m.inertia[0], kMaxInertia);
-  v.vec3_exact("inertia_y", m.inertia[1], kMaxInertia);
-  v.vec3_exact("inertia_z", m.inertia[2], kMaxInertia);
 }
 
 template <class V>

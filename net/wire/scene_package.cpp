@@ -14,11 +14,12 @@ namespace {
 using wire::Bytes;
 using wire::ByteView;
 
-// A package: its version, how the rest is coded, the rest. A scene in which something comes or goes, or a
-// joint lets go or closes, has the seventh version, else one that does more than flow and be held the sixth,
-// else one with textures or light of its own the fifth, else one whose fluids say how they look the fourth,
-// else one that settles before its run the third, else one with gauges or regions the second; any other the
-// first, which programs from before these can read. A peer needs the first, the fourth or the fifth.
+// A package: its version, how the rest is coded, the rest. A scene in which bodies may be cut has the eighth
+// version, else one in which something comes or goes, or a joint lets go or closes, the seventh, else one
+// that does more than flow and be held the sixth, else one with textures or light of its own the fifth, else
+// one whose fluids say how they look the fourth, else one that settles before its run the third, else one
+// with gauges or regions the second; any other the first, which programs from before these can read. A peer
+// needs the first, the fourth or the fifth.
 constexpr std::uint8_t kVersion = 1;
 constexpr std::uint8_t kMeasured = 2;
 constexpr std::uint8_t kSettled = 3;
@@ -26,6 +27,7 @@ constexpr std::uint8_t kLooked = 4;
 constexpr std::uint8_t kTextured = 5;
 constexpr std::uint8_t kActing = 6;
 constexpr std::uint8_t kComing = 7;
+constexpr std::uint8_t kCutVersion = 8;
 
 /// Without what packages before the fifth version leave out.
 Material plain(Material material) {
@@ -110,6 +112,8 @@ bool comes_or_goes(const Scene& scene) {
 }
 
 std::uint8_t version_of(const Scene& scene) {
+  if (std::ranges::any_of(scene.bodies, [](const Body& b) { return is_cut(b) || b.blade; }))
+    return kCutVersion;
   if (comes_or_goes(scene)) return kComing;
   if (!scene.task.empty() || !scene.joints.empty()) return kActing;
   for (const Body& body : scene.bodies)
@@ -128,9 +132,11 @@ std::uint8_t version_of(const Scene& scene) {
 
 // What a version has, of a scene of the last one.
 template <class F>
-wire::Fault with_version(std::uint8_t version, wire::ComingScene& coming, F&& f) {
+wire::Fault with_version(std::uint8_t version, wire::CutScene& cut, F&& f) {
+  wire::ComingScene& coming = cut.coming;
   wire::ActingScene& acting = coming.acting;
   wire::TexturedScene& whole = acting.textured;
+  if (version == kCutVersion) return f(cut);
   if (version == kComing) return f(coming);
   if (version == kActing) return f(acting);
   if (version == kTextured) return f(whole);
@@ -161,7 +167,10 @@ void keep_seen(Scene& scene) {
   for (Body& body : scene.bodies) {
     body.temperature.reset();
     body.keys.clear();
-    body.repeats = body.starts_away = false;
+    body.repeats = body.starts_away = body.blade = false;
+    body.pieces = 0;
+    body.piece_of = -1;
+    body.cut_n_m = 0.0;
   }
   std::vector<int> moved(scene.meshes.size(), -1);
   std::vector<TriangleMesh> kept;
@@ -213,19 +222,19 @@ std::vector<std::string> images_left_behind(const Scene& scene) {
 }
 
 Result<Bytes> pack_scene(const Scene& scene, double spacing, SceneParts parts) {
-  wire::ComingScene coming{
-      {{{{{{scene, spacing}}}, scene.fluids}, {}, {}}, {}, {}, {}, {}, {}}, {}, {}, {}, {}};
-  wire::TexturedScene& whole = coming.acting.textured;
+  wire::CutScene cut{{{{{{{{scene, spacing}}}, scene.fluids}, {}, {}}, {}, {}, {}, {}, {}}, {}, {}, {}, {}},
+                     {}};
+  wire::TexturedScene& whole = cut.coming.acting.textured;
   Scene& sent = whole.looked.settled.measured.packed.scene;
   if (parts == SceneParts::kSeen) keep_seen(sent);
   keep_sent_images(sent);
   for (const TriangleMesh& mesh : sent.meshes) whole.texcoords.push_back(mesh.texcoords);
   each_material(sent, [&](Material& material) { whole.materials.push_back(material); });
   const std::uint8_t version = version_of(sent);
-  if (version >= kActing) wire::fill_acting(sent, coming);
+  if (version >= kActing) wire::fill_acting(sent, cut);
   Bytes content;
   if (const wire::Fault fault =
-          with_version(version, coming, [&](auto& fields) { return wire::encode(fields, content); })) {
+          with_version(version, cut, [&](auto& fields) { return wire::encode(fields, content); })) {
     return Error{"scene '" + scene.name + "'", "cannot be sent or recorded: " + fault.text(),
                  "net/WIRE_FORMAT.md has the limits"};
   }
@@ -253,7 +262,7 @@ Result<Bytes> pack_scene(const Scene& scene, double spacing, SceneParts parts) {
 Result<UnpackedScene> unpack_scene(ByteView package) {
   if (package.size() < kHead) return damaged("it is empty");
   if (package.size() > wire::kMaxSceneBytes + kHead) return damaged("it is too large");
-  if (package[0] < kVersion || package[0] > kComing)
+  if (package[0] < kVersion || package[0] > kCutVersion)
     return damaged("its version is " + std::to_string(package[0]));
   if (package[1] > kZstd) return damaged("its coding is " + std::to_string(package[1]));
   ByteView content = package.subspan(kHead);
@@ -264,10 +273,10 @@ Result<UnpackedScene> unpack_scene(ByteView package) {
     unpacked = std::move(result.value());
     content = unpacked;
   }
-  wire::ComingScene coming;
-  wire::TexturedScene& whole = coming.acting.textured;
+  wire::CutScene cut;
+  wire::TexturedScene& whole = cut.coming.acting.textured;
   if (const wire::Fault fault =
-          with_version(package[0], coming, [&](auto& fields) { return wire::decode(content, fields); })) {
+          with_version(package[0], cut, [&](auto& fields) { return wire::decode(content, fields); })) {
     return damaged(fault.text());
   }
   wire::PackedScene& packed = whole.looked.settled.measured.packed;
@@ -290,8 +299,11 @@ Result<UnpackedScene> unpack_scene(ByteView package) {
       ++read;
     });
   }
-  if (package[0] >= kActing && !wire::take_acting(coming, package[0] == kComing, packed.scene))
-    return damaged("goals of its task do not fit its steps");
+  if (package[0] >= kActing) {
+    const std::string odd =
+        wire::take_acting(cut, package[0] >= kComing, package[0] >= kCutVersion, packed.scene);
+    if (!odd.empty()) return damaged(odd);
+  }
   return UnpackedScene{std::move(packed.scene), packed.spacing};
 }
 

@@ -45,6 +45,7 @@ std::vector<Table> tables() {
           message<WorldInfo>("WorldInfo"),
           message<Rights>("Rights"),
           message<Task>("Task"),
+          message<Cuts>("Cuts"),
           message<Notice>("Notice"),
           message<Poses>("Poses"),
           message<ClockPing>("ClockPing"),
@@ -53,7 +54,7 @@ std::vector<Table> tables() {
           message<Bodies>("Bodies"),
           message<Hands>("Hands"),
           message<FluidWrench>("FluidWrench"),
-          part<ComingScene>("Scene")};
+          part<CutScene>("Scene")};
 }
 
 constexpr const char kBegin[] = "<!-- table: ";

@@ -31,10 +31,15 @@ FluidLoad load_of(const FluidWrenchModel& model) {
   return load;
 }
 
+ReplicaBody replica_of(const Scene& scene, const Body& body, const MassProperties& mass) {
+  return {mass.mass, body.point_probe ? glm::dmat3(1.0) : mass.inertia, mass.center_of_mass, body.point_probe,
+          scene.gravity};
+}
+
 }  // namespace
 
 HeldBodies::HeldBodies(const Scene& scene, Coupling coupling)
-    : coupling_(coupling), places_(scene.grips.size()) {
+    : scene_(scene), coupling_(coupling), places_(scene.grips.size()) {
   for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
     const Body& source = scene.bodies[b];
     std::vector<ReplicaGrip> grips;
@@ -47,13 +52,13 @@ HeldBodies::HeldBodies(const Scene& scene, Coupling coupling)
       places.push_back(g);
     }
     if (grips.empty() || source.motion != BodyMotion::kFree || !(source.mass.mass > 0.0)) continue;
-    const ReplicaBody body{source.mass.mass, source.point_probe ? glm::dmat3(1.0) : source.mass.inertia,
-                           source.mass.center_of_mass, source.point_probe, scene.gravity};
+    const ReplicaBody body = replica_of(scene, source, source.mass);
     for (std::size_t i = 0; i < places.size(); ++i)
       places_[places[i]] = {static_cast<int>(bodies_.size()), i};
     const std::size_t count = grips.size();
     bodies_.push_back({b, std::move(places), HeldBody(body, std::move(grips)), std::vector<OwnHand>(count),
-                       std::vector<MotionError>(count), std::vector<HostHand>(count), 0.0, false, 0});
+                       std::vector<MotionError>(count), std::vector<HostHand>(count), 0.0, false, false,
+                       source.mass});
   }
 }
 
@@ -80,6 +85,7 @@ void HeldBodies::update(const BodyMessage& newest, bool fresh, std::int64_t now_
   received_ns_ = now_ns;
   for (Entry& entry : bodies_) {
     if (begin) restart(entry);
+    follow_cuts(entry, newest.bodies.cuts.get());
     tell(entry, newest, now_ns);
   }
 }
@@ -89,6 +95,16 @@ void HeldBodies::restart(Entry& entry) noexcept {
   entry.anew = entry.share > 0.0 && entry.held.started();
   entry.held.restart();
   entry.model_tick = 0;
+}
+
+void HeldBodies::follow_cuts(Entry& entry, const BodyCuts* cuts) noexcept {
+  const Body& body = scene_.bodies[entry.body];
+  const BodyCut* const cut = cuts ? cuts->of(entry.body) : nullptr;
+  const MassProperties& mass = cut ? cut->mass : body.mass;
+  if (mass == entry.mass) return;
+  entry.mass = mass;
+  entry.held.become(replica_of(scene_, body, mass));
+  restart(entry);
 }
 
 void HeldBodies::tell(Entry& entry, const BodyMessage& newest, std::int64_t now_ns) noexcept {

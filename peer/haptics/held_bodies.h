@@ -24,6 +24,7 @@ enum class Coupling {
 /// neither allocates nor locks once made.
 class HeldBodies {
  public:
+  /// `scene` must outlive it.
   HeldBodies(const Scene& scene, Coupling coupling);
 
   /// s of round trip and jitter up to which the host's body is used, and from which the replica is.
@@ -87,11 +88,14 @@ class HeldBodies {
     double share = 0.0;
     bool on_the_wall = false;  // one of its hands goes by the wall's clock
     bool anew = false;
+    MassProperties mass;           // of what is left of it
     std::uint64_t model_tick = 0;  // of the newest model; 0 = none came
   };
   static void restart(Entry& entry) noexcept;
+  void follow_cuts(Entry& entry, const BodyCuts* cuts) noexcept;
   void tell(Entry& entry, const BodyMessage& newest, std::int64_t now_ns) noexcept;
 
+  const Scene& scene_;
   Coupling coupling_;
   std::vector<Place> places_;  // one a grip of the scene
   std::deque<Entry> bodies_;

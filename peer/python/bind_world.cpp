@@ -163,6 +163,15 @@ void bind_changes(py::class_<WorldProgram>& c) {
           "take_away",
           [](WorldProgram& w, const py::object& which) { w.change({HostAction::kTakeAway, w.thing(which)}); },
           py::arg("name"), "Takes a body, or the particles of a fluid volume, out of the world.")
+      .def(
+          "cut",
+          [](WorldProgram& w, const py::object& which, const py::object& normal, double offset) {
+            return w.cut(which, to_vector(normal, "normal"), offset);
+          },
+          py::arg("body"), py::arg("normal"), py::arg("offset"),
+          "Cuts a body (`pieces` in its scene) along the plane normal . x = offset, m, of its mesh frame. "
+          "Returns the\n"
+          "name of the body that comes off. Raises slosh.Error where it cannot be cut there.")
       .def_property_readonly(
           "task", &task,
           "Where the scene's guided task is, followed as the world is stepped (scenes/TASKS.md): title, say, "

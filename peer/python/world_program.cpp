@@ -289,6 +289,15 @@ void WorldProgram::restore(const std::string& saved) {
   take(world_->restore(bytes));
 }
 
+std::string WorldProgram::cut(const py::object& name_or_number, const glm::dvec3& normal, double offset) {
+  refuse_while_recorded("cut");
+  const std::size_t which = body(name_or_number);
+  const Moving moving(*this);
+  const Result<std::size_t> piece = world_->cut(which, {normal, offset});
+  if (!piece) throw Raised(piece.error());
+  return scene_->bodies[piece.value()].name;
+}
+
 const BodySnapshot& WorldProgram::bodies() {
   const World& now = world();
   if (!bodies_known_) now.fill(bodies_);
@@ -313,8 +322,8 @@ void WorldProgram::change(const HostCommand& command) {
 
 void WorldProgram::refuse_while_recorded(const char* what) const {
   if (recording_)
-    throw Raised({std::string("slosh.World.") + what,
-                  "a recording cannot say that the world was put elsewhere", "Call stop_recording() first"});
+    throw Raised({std::string("slosh.World.") + what, "a recording cannot say that this was done",
+                  "Call stop_recording() first"});
 }
 
 void WorldProgram::record(const std::filesystem::path& file) {

@@ -56,6 +56,8 @@ class WorldProgram {
   /// A viscosity or gravity, from the next step on.
   void change(const HostCommand& command);
   void restore(const std::string& saved);
+  /// The name of what comes off.
+  std::string cut(const py::object& name_or_number, const glm::dvec3& normal, double offset);
   const Scene& scene() const { return *scene_; }
   std::shared_ptr<const Scene> shared_scene() const { return scene_; }
   const SampledScene& sampled() const { return sampled_; }

@@ -11,6 +11,7 @@ namespace slosh {
 namespace {
 
 constexpr std::size_t kMaxPending = 256;
+constexpr std::size_t kKeptCuts = 32;
 constexpr double kCarryOn = 0.5;          // s
 constexpr double kIntervalShare = 0.05;   // of a new interval in the smoothed one
 constexpr double kLongestInterval = 0.1;  // s
@@ -174,6 +175,12 @@ void BodyInbox::take(const wire::FluidWrench& message) {
     *same = wire::to_model(message);
 }
 
+void BodyInbox::take(const wire::Cuts& message) {
+  // States are given out by the delay and a jump of it later: more cuts than this are not in that time.
+  if (cuts_.size() >= kKeptCuts) cuts_.erase(cuts_.begin());
+  cuts_.push_back({message.run, std::make_shared<BodyCuts>(wire::to_cuts(message, scene_.bodies.size()))});
+}
+
 std::int64_t BodyInbox::due_ns(const Pending& pending, const ClockSync& clock) const {
   return clock.to_peer(pending.stamp_ns) + to_nanoseconds(delay_.value());
 }
@@ -237,6 +244,9 @@ void BodyInbox::lay_out(const Pending& pending, BodyMessage& state) const {
   bodies.tick = pending.tick;
   bodies.time = pending.time;
   bodies.status = pending.status;
+  bodies.cuts = nullptr;
+  for (const RunCuts& known : cuts_)
+    if (known.run == pending.run && known.cuts->since <= pending.tick) bodies.cuts = known.cuts;
   for (const wire::BodyEntry& entry : pending.bodies) {
     bodies.bodies[entry.body] = {entry.pose, entry.twist, entry.center_of_mass, entry.fluid};
   }

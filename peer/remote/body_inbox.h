@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "net/channel.h"
+#include "net/wire/cuts.h"
 #include "net/wire/fluid_wrench.h"
 #include "net/wire/messages.h"
 #include "peer/remote/adaptive_delay.h"
@@ -71,6 +72,9 @@ class BodyInbox {
   /// Joins the next state that is given out.
   void take(const wire::FluidWrench& model);
 
+  /// They hold from their tick on; what comes late, from the next state on.
+  void take(const wire::Cuts& cuts);
+
   /// The world stands still, as the host said: the last state is handed out once more with a pace of 0.
   void set_paused(bool paused) { paused_ = paused; }
 
@@ -124,6 +128,11 @@ class BodyInbox {
   bool newest_fresh_ = false;
   std::uint64_t newest_tick_ = 0;
   std::vector<Pending> pending_;  // by tick, of one run
+  struct RunCuts {
+    std::uint32_t run;
+    std::shared_ptr<const BodyCuts> cuts;
+  };
+  std::vector<RunCuts> cuts_;     // as they came
   std::uint32_t models_run_ = 0;  // that state_.fluid_models are of
   AdaptiveDelay delay_;
   Backlog backlog_;

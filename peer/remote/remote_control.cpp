@@ -74,6 +74,8 @@ wire::Fault RemoteLink::receive(std::uint64_t type, wire::ByteView payload) {
       return on_rights(payload);
     case wire::ControlType::kTask:
       return on_task(payload);
+    case wire::ControlType::kCuts:
+      return on_cuts(payload);
     case wire::ControlType::kNotice:
       return on_notice(payload);
     case wire::ControlType::kBye: {
@@ -192,6 +194,16 @@ wire::Fault RemoteLink::on_rights(wire::ByteView payload) {
   return {};
 }
 
+wire::Fault RemoteLink::on_cuts(wire::ByteView payload) {
+  wire::Cuts cuts;
+  if (wire::Fault fault = wire::decode(payload, cuts)) return fault;
+  if (inbox_)
+    inbox_->take(cuts);
+  else
+    cuts_ = std::move(cuts);
+  return {};
+}
+
 wire::Fault RemoteLink::on_task(wire::ByteView payload) {
   wire::Task task;
   if (wire::Fault fault = wire::decode(payload, task, agreed_)) return fault;
@@ -227,6 +239,7 @@ void RemoteLink::build_world() {
   const double time_step = status_.welcome.time_step;
   inbox_ = std::make_unique<BodyInbox>(world_.scene, time_step);
   inbox_->set_paused(status_.world.paused);
+  if (cuts_) inbox_->take(*cuts_);
   inbox_->set_stands_until_felt((agreed_ & wire::kFeltHands) != 0);
   world_.channel =
       std::make_unique<Channel>(world_.scene.grips.size(), inbox_->state(), options_.snapshot_bytes);

@@ -125,6 +125,7 @@ class RemoteLink final : public EndpointEvents {
   wire::Fault on_world_info(wire::ByteView payload);
   wire::Fault on_rights(wire::ByteView payload);
   wire::Fault on_task(wire::ByteView payload);
+  wire::Fault on_cuts(wire::ByteView payload);
   wire::Fault on_notice(wire::ByteView payload);
   void take_scene(std::span<const std::uint8_t> bytes, bool end);
   void build_world();
@@ -152,6 +153,7 @@ class RemoteLink final : public EndpointEvents {
   RemoteWorld world_;
   RemoteStatus status_;  // this thread's; publish() copies it
   std::unique_ptr<BodyInbox> inbox_;
+  std::optional<wire::Cuts> cuts_;  // that came before there was an inbox
   std::unique_ptr<PoseUplink> uplink_;
   wire::Capabilities agreed_ = 0;  // with the host of the present connection
   ClockSync clock_;

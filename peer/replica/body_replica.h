@@ -62,6 +62,7 @@ class BodyReplica {
 
   /// Takes the host's motion for its own and forgets the rest: at first, after a reset, a pause or a silence.
   void restart(const RigidMotion& motion) noexcept;
+  void become(const ReplicaBody& body) noexcept { body_ = body; }
   bool started() const { return started_; }
 
   void set_gains(std::size_t g, const CouplingGains& gains) noexcept { grips_[g].gains = gains; }

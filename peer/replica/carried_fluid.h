@@ -31,6 +31,7 @@ class CarriedFluid {
   explicit CarriedFluid(const ReplicaBody& body) : body_(body) { restart(); }
 
   void restart() noexcept;
+  void become(const ReplicaBody& body) noexcept { body_ = body; }
   void update(const Acting& acting) noexcept;
   /// Puts what swings in the place of the line in `load`, as far as it explains more, times `share` (0–1),
   /// and takes it out of `rest`: the wrench that acts besides couplings, to which the answer to `pace`

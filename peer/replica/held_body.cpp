@@ -40,6 +40,13 @@ HeldBody::HeldBody(const ReplicaBody& body, std::vector<ReplicaGrip> grips, cons
   for (const ReplicaGrip& grip : grips) gains_.push_back(grip.gains);
 }
 
+void HeldBody::become(const ReplicaBody& body) noexcept {
+  body_ = body;
+  replica_.become(body);
+  load_work_.become(body);
+  load_.become(body);
+}
+
 void HeldBody::restart() noexcept {
   started_ = false;
   delay_.restart();

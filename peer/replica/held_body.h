@@ -45,6 +45,8 @@ class HeldBody {
   /// The next update is taken as it is: at first, after a reset, a pause, a silence.
   void restart() noexcept;
   bool started() const noexcept { return started_; }
+  /// It has another mass from now on, as a part that was cut off; restart() follows.
+  void become(const ReplicaBody& body) noexcept;
   void receive(const HostUpdate& word) noexcept;
   /// How the fluid answers to the body, before receive() of the same state or a newer one: its derivatives,
   /// its added mass and the trust in them count. What acts besides them is worked out from how the body

@@ -23,6 +23,11 @@ struct LoadEstimator {
     disturbance = model_uncertainty = quiet_load = 0.0;
   }
 
+  void become(const ReplicaBody& body) noexcept {
+    body_ = body;
+    carried.become(body);
+  }
+
   /// The update before.
   struct Before {
     bool known = false;

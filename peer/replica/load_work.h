@@ -20,6 +20,12 @@ class LoadWork {
     before_.resize(grips.size());
   }
 
+  /// Another mass; restart() follows.
+  void become(const ReplicaBody& body) noexcept {
+    for (glm::dvec3& arm : arms_) arm += body_.center - body.center;
+    body_ = body;
+  }
+
   /// The next update restarts at 0.
   void restart() noexcept {
     known_ = false;

@@ -2,18 +2,33 @@
 
 #include <algorithm>
 
+#include "peer/view/cut_mesh.h"
+
 namespace slosh {
 
-BodyWalls::BodyWalls(const Scene& scene, float clearance) : clearance_(clearance) {
+BodyWalls::BodyWalls(const Scene& scene, float clearance) : scene_(scene), clearance_(clearance) {
   for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
     const Body& body = scene.bodies[i];
     if (body.mesh < 0 || body.point_probe) continue;
     walls_.push_back(
-        {i, mesh::MeshTree(scene.meshes[static_cast<std::size_t>(body.mesh)]), body.pose, body.pose});
+        {i, {}, mesh::MeshTree(scene.meshes[static_cast<std::size_t>(body.mesh)]), body.pose, body.pose});
   }
 }
 
-void BodyWalls::move(std::span<const BodyState> bodies) {
+void BodyWalls::follow_cuts(const BodyCuts* cuts) {
+  for (Wall& wall : walls_) {
+    const BodyCut* const cut = cuts ? cuts->of(wall.body) : nullptr;
+    if (cut ? cut->planes == wall.planes : wall.planes.empty()) continue;
+    const TriangleMesh& mesh = scene_.meshes[static_cast<std::size_t>(scene_.bodies[wall.body].mesh)];
+    wall.planes = cut ? cut->planes : std::vector<CutPlane>();
+    wall.tree = mesh::MeshTree(cut_mesh(mesh, wall.planes));
+  }
+}
+
+void BodyWalls::move(const BodySnapshot& now) {
+  if (now.cuts != cuts_) follow_cuts(now.cuts.get());
+  cuts_ = now.cuts;
+  const std::vector<BodyState>& bodies = now.bodies;
   for (Wall& wall : walls_) {
     if (wall.body >= bodies.size()) continue;
     const Pose& pose = bodies[wall.body].pose;

@@ -185,14 +185,14 @@ void Foam::record(const Snapshot& snapshot) {
     // Still water has no foam and costs a look at its speeds.
     const bool violent = !fast_.empty() || !drops_.empty();
     if (violent && !walls_) walls_.emplace(scene_, kClear * spacing_);
-    if (walls_) walls_->move(snapshot.rigid.bodies);
+    if (walls_) walls_->move(snapshot.rigid);
     if (violent) {
       sort(positions);
       move(static_cast<float>(passed), positions);
       make(static_cast<float>(passed), positions);
     }
   } else {
-    if (walls_) walls_->move(snapshot.rigid.bodies);
+    if (walls_) walls_->move(snapshot.rigid);
     drops_.clear();
   }
   before_ = snapshot.positions;

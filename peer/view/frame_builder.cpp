@@ -6,6 +6,7 @@
 #include <glm/gtc/matrix_transform.hpp>
 
 #include "net/text/clean.h"
+#include "peer/view/cut_mesh.h"
 #include "peer/view/palette.h"
 #include "scenes/images/decode.h"
 
@@ -136,6 +137,7 @@ class FrameBuilder::Textures {
 
 FrameBuilder::FrameBuilder(const Scene& scene, double spacing, MeshSink& meshes)
     : scene_(scene),
+      meshes_(meshes),
       wetness_(scene, spacing),
       particle_radius_(static_cast<float>(kRadiusOfSpacing * spacing)) {
   std::vector<MeshHandle> handles(scene.meshes.size());
@@ -154,11 +156,13 @@ FrameBuilder::FrameBuilder(const Scene& scene, double spacing, MeshSink& meshes)
   for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
     const Body& body = scene.bodies[i];
     if (body.mesh < 0) continue;
-    placed_.push_back({upload(body.mesh), static_cast<int>(i), look_of(body.material), glm::mat4(1.0f)});
+    const MeshHandle mesh = upload(body.mesh);
+    placed_.push_back({mesh, mesh, static_cast<int>(i), look_of(body.material), glm::mat4(1.0f)});
   }
   for (const Picture& picture : scene.pictures) {
     if (picture.mesh < 0) continue;
-    placed_.push_back({upload(picture.mesh), -1, look_of(picture.material), model_matrix(picture.pose)});
+    const MeshHandle mesh = upload(picture.mesh);
+    placed_.push_back({mesh, mesh, -1, look_of(picture.material), model_matrix(picture.pose)});
   }
   Textures textures(scene, meshes, left_out_);
   std::size_t next = 0;
@@ -179,6 +183,23 @@ FrameBuilder::FrameBuilder(const Scene& scene, double spacing, MeshSink& meshes)
   }
 }
 
+void FrameBuilder::follow_cuts(const BodyCuts* cuts) {
+  for (Placed& placed : placed_) {
+    if (placed.body < 0) continue;
+    const auto body = static_cast<std::size_t>(placed.body);
+    const BodyCut* const cut = cuts ? cuts->of(body) : nullptr;
+    if (cut ? cut->planes == placed.planes : placed.planes.empty()) continue;
+    if (placed.mesh != placed.whole) meshes_.remove_mesh(placed.mesh);
+    placed.mesh = placed.whole;
+    placed.planes.clear();
+    if (!cut) continue;
+    placed.planes = cut->planes;
+    const auto whole = static_cast<std::size_t>(scene_.bodies[body].mesh);
+    const TriangleMesh mesh = cut_mesh(scene_.meshes[whole], cut->planes);
+    placed.mesh = meshes_.add_mesh(mesh.positions, mesh.normals, mesh.triangles, mesh.texcoords);
+  }
+}
+
 void FrameBuilder::show_ghost(const std::vector<GuidedHand>& hands) {
   ghosts_.clear();
   for (const GuidedHand& hand : hands) {
@@ -186,7 +207,7 @@ void FrameBuilder::show_ghost(const std::vector<GuidedHand>& hands) {
     const int body = scene_.grips[hand.grip].body;
     const auto there = std::ranges::find(placed_, body, &Placed::body);
     if (there != placed_.end())
-      ghosts_.push_back({hand.grip, PoseTrack(hand.way, hand.way.front().pose), there->mesh});
+      ghosts_.push_back({hand.grip, PoseTrack(hand.way, hand.way.front().pose), there->whole});
   }
 }
 
@@ -218,11 +239,13 @@ Frame FrameBuilder::build(const Snapshot& snapshot, double view_distance) {
   frame.particle_radius = particle_radius_;
 
   const BodySnapshot& rigid = snapshot.rigid;
-  if (walls_) walls_->move(rigid.bodies);
+  if (rigid.cuts != cuts_) follow_cuts(rigid.cuts.get());
+  cuts_ = rigid.cuts;
+  if (walls_) walls_->move(rigid);
   frame.wall = [this, &rigid](const glm::vec3& at, float reach) {
     if (!walls_) {
       walls_.emplace(scene_, 0.0f);
-      walls_->move(rigid.bodies);
+      walls_->move(rigid);
     }
     return walls_->nearest(at, reach);
   };

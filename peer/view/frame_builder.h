@@ -17,7 +17,7 @@ namespace slosh {
 /// Hands the scene's meshes over once and places them for every snapshot. On the thread of what draws them.
 class FrameBuilder {
  public:
-  /// `scene` must outlive it. `spacing` in m.
+  /// `scene` and `meshes` must outlive it. `spacing` in m.
   FrameBuilder(const Scene& scene, double spacing, MeshSink& meshes);
 
   /// The returned frame points into `snapshot` and this, which must live until it is drawn. Without view and
@@ -33,10 +33,12 @@ class FrameBuilder {
 
  private:
   struct Placed {
-    MeshHandle mesh;
-    int body;  // index, or −1 for a picture
+    MeshHandle whole;
+    MeshHandle mesh;  // what cuts left of it
+    int body;         // index, or −1 for a picture
     MeshLook look;
     glm::mat4 model;  // of a picture
+    std::vector<CutPlane> planes{};
   };
   struct Ghost {
     std::size_t grip;
@@ -46,8 +48,11 @@ class FrameBuilder {
   class Textures;
 
   void add_ghosts(const BodySnapshot& rigid, Frame& frame);
+  void follow_cuts(const BodyCuts* cuts);
 
   const Scene& scene_;
+  MeshSink& meshes_;
+  std::shared_ptr<const BodyCuts> cuts_;
   std::vector<Error> left_out_;
   std::vector<Placed> placed_;
   std::vector<Ghost> ghosts_;

@@ -31,6 +31,10 @@ class MeshStore {
   MeshHandle add(std::span<const glm::vec3> positions, std::span<const glm::vec3> normals,
                  std::span<const glm::uvec3> triangles, std::span<const glm::vec2> texcoords = {});
 
+  void remove(MeshHandle handle) {
+    if (handle < meshes_.size()) meshes_[handle] = {};
+  }
+
   bool has(MeshHandle handle) const { return handle < meshes_.size() && meshes_[handle].index_count > 0; }
   /// The mesh's box in its own frame.
   const Bounds& bounds(MeshHandle handle) const { return meshes_[handle].bounds; }

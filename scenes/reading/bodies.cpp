@@ -3,9 +3,9 @@
 #include <cmath>
 
 #include "scenes/gltf/meshes.h"
-#include "scenes/mesh/convex.h"
 #include "scenes/mesh/united.h"
 #include "scenes/reading/reading.h"
+#include "sim/math/convex.h"
 
 namespace slosh::reading {
 namespace {
@@ -18,7 +18,6 @@ constexpr double kProbeRadius = 0.005;
 constexpr double kProbeMass = 0.05;
 constexpr std::size_t kMaxBodies = 10'000;
 constexpr std::size_t kMaxPictures = 4096;  // as a network carries
-constexpr std::size_t kMaxCutTriangles = 2000;
 
 /// Symmetric positive definite, and no moment above the sum of the other two.
 bool is_inertia(const glm::dmat3& m) {
@@ -109,7 +108,7 @@ Problem check_pieces(const Reading& reading, int node, const Body& body) {
                  "may be cut, and has " + std::to_string(welded.triangles.size()) + " triangles, more than " +
                      std::to_string(kMaxCutTriangles),
                  "In Blender: Decimate, or leave pieces out"};
-  if (mesh::is_convex(welded)) return std::nullopt;
+  if (is_convex<glm::dvec3>(welded.points, welded.triangles)) return std::nullopt;
   return Error{reading.document.owner(node), "may be cut, and its mesh is not convex",
                "In Blender: Mesh > Convex Hull, or leave pieces out"};
 }

@@ -78,8 +78,16 @@ Blades::Blades(const Scene& scene, double spacing) : spacing_(spacing) {
       lower = glm::min(lower, p);
       upper = glm::max(upper, p);
     }
+    // A handle may be longer than the edge.
+    const float on_edge = lower.y + 1e-3f * (upper.y - lower.y);
+    float first = upper.x, last = lower.x;
+    for (const glm::vec3& p : mesh.positions) {
+      if (p.y > on_edge) continue;
+      first = std::min(first, p.x);
+      last = std::max(last, p.x);
+    }
     blades_.push_back({static_cast<int>(b),
-                       {{lower.x, lower.y, 0.0}, {upper.x, lower.y, 0.0}},
+                       {{first, lower.y, 0.0}, {last, lower.y, 0.0}},
                        static_cast<double>(upper.y - lower.y)});
   }
 }

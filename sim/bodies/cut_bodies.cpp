@@ -2,7 +2,19 @@
 
 #include <algorithm>
 
+#include "sim/math/convex.h"
+
 namespace slosh {
+
+std::optional<Error> check_cut_bodies(const Scene& scene) {
+  for (const Body& body : scene.bodies) {
+    if (body.pieces == 0) continue;
+    const TriangleMesh& mesh = scene.meshes[static_cast<std::size_t>(body.mesh)];
+    if (mesh.triangles.size() > kMaxCutTriangles || !is_convex<glm::vec3>(mesh.positions, mesh.triangles))
+      return Error{"'" + body.name + "'", "may be cut, and is not convex or has too many triangles", ""};
+  }
+  return std::nullopt;
+}
 
 CutBodies::CutBodies(const Scene& scene, const SampledScene& sampled) : spacing_(sampled.spacing) {
   if (std::ranges::none_of(scene.bodies, is_cut)) return;
@@ -27,7 +39,7 @@ CutBodies::CutBodies(const Scene& scene, const SampledScene& sampled) : spacing_
       family.surface = sampled.surfaces[b];
       family.field = sampled.distance_fields[b];
     }
-    states_[b].solid = of(static_cast<int>(b)).solid;
+    states_[b] = {{}, of(static_cast<int>(b)).solid, of(static_cast<int>(b)).mass};
   }
 }
 
@@ -35,6 +47,14 @@ std::vector<std::vector<CutPlane>> CutBodies::all_planes() const {
   std::vector<std::vector<CutPlane>> all;
   for (const State& state : states_) all.push_back(state.planes);
   return all;
+}
+
+std::shared_ptr<const BodyCuts> CutBodies::told(std::uint64_t since) const {
+  if (std::ranges::all_of(states_, [](const State& state) { return state.planes.empty(); })) return nullptr;
+  const auto cuts = std::make_shared<BodyCuts>();
+  cuts->since = since;
+  for (const State& state : states_) cuts->bodies.push_back({state.planes, state.mass});
+  return cuts;
 }
 
 Result<PieceShape> CutBodies::shape(int body, std::vector<CutPlane> planes) const {
@@ -69,7 +89,7 @@ Result<PieceShape> CutBodies::shape(int body, std::vector<CutPlane> planes) cons
 }
 
 void CutBodies::set(int body, const PieceShape& shape) {
-  states_[static_cast<std::size_t>(body)] = {shape.planes, shape.solid};
+  states_[static_cast<std::size_t>(body)] = {shape.planes, shape.solid, shape.mass};
 }
 
 }  // namespace slosh

@@ -1,10 +1,13 @@
 // Bodies that may be cut, and what is left of each.
 #pragma once
 
+#include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "sim/bodies/pieces.h"
+#include "sim/math/body_cuts.h"
 #include "sim/math/result.h"
 
 namespace slosh {
@@ -17,6 +20,10 @@ struct PieceShape {
   SurfaceSamples surface;
   DistanceField field;
 };
+
+/// What a scene says of bodies that may be cut; reading says it better, this is for scenes from elsewhere.
+/// Error: one is not convex, or has too many triangles.
+std::optional<Error> check_cut_bodies(const Scene& scene);
 
 class CutBodies {
  public:
@@ -36,6 +43,8 @@ class CutBodies {
     return states_[static_cast<std::size_t>(body)].planes;
   }
   std::vector<std::vector<CutPlane>> all_planes() const;
+  /// From that tick on; null where every body is whole.
+  std::shared_ptr<const BodyCuts> told(std::uint64_t since) const;
 
   /// What a body is within these planes. Errors: of more than kMaxCutPlanes, too thin, nothing.
   Result<PieceShape> shape(int body, std::vector<CutPlane> planes) const;
@@ -54,6 +63,7 @@ class CutBodies {
   struct State {
     std::vector<CutPlane> planes;
     ConvexSolid solid;
+    MassProperties mass;
   };
   const Family& of(int body) const {
     return families_[static_cast<std::size_t>(family_of_[static_cast<std::size_t>(body)])];

@@ -21,7 +21,7 @@ struct ConvexSolid {
   std::vector<Face> faces;  ///< none: nothing is left
 };
 
-/// Of a convex mesh (scenes/mesh/convex.h), in its frame.
+/// Of a convex mesh (sim/math/convex.h), in its frame.
 ConvexSolid convex_solid(const TriangleMesh& mesh);
 /// What of it is on the plane's inner side. The new face gets `number`.
 ConvexSolid clipped(const ConvexSolid& solid, const CutPlane& plane, int number);

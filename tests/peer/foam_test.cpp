@@ -208,12 +208,13 @@ TEST(FoamOnAPeer, AWallThatMovesTakesDropsAlong) {
   scene.meshes.push_back(thin_wall(0.0f));
   scene.bodies.emplace_back().mesh = 0;
   BodyWalls walls(scene, 0.001f);
-  std::vector<BodyState> bodies(1);
-  walls.move(bodies);
+  BodySnapshot now;
+  now.bodies.resize(1);
+  walls.move(now);
   const glm::vec3 still(0.05f, 0.0f, 0.0f);
   EXPECT_FALSE(walls.stop(still, still));
-  bodies[0].pose.position.x = 0.1;  // it sweeps over the drop
-  walls.move(bodies);
+  now.bodies[0].pose.position.x = 0.1;  // it sweeps over the drop
+  walls.move(now);
   const auto stopped = walls.stop(still, still);
   ASSERT_TRUE(stopped);
   EXPECT_NEAR(stopped->x, 0.102f, 1e-5f);
@@ -229,11 +230,13 @@ TEST(BodyWalls, TheNearestFaceIsThatOfTheBodyAsItStands) {
     scene.bodies.emplace_back().mesh = i;
   }
   BodyWalls walls(scene, 0.0f);
-  std::vector<BodyState> bodies(2);
+  BodySnapshot now;
+  now.bodies.resize(2);
+  std::vector<BodyState>& bodies = now.bodies;
   bodies[0].pose.position.x = 0.1;
   bodies[1].pose.position.x = 0.1;
   bodies[1].pose.orientation = glm::angleAxis(glm::half_pi<double>(), glm::dvec3(0.0, 0.0, 1.0));
-  walls.move(bodies);
+  walls.move(now);
   const auto upright = walls.nearest({0.11f, 0.05f, 0.0f}, 0.02f);
   ASSERT_TRUE(upright);
   EXPECT_NEAR(upright->normal.x, 1.0f, 1e-5f);

@@ -59,5 +59,44 @@ TEST(HeldBodies, InOneProcessTheReplicaIsForWhatTheFluidIsKnownOf) {
   EXPECT_EQ(share_of({Coupling::kSpring, true, true}, 1.0), 0.0);
 }
 
+/// Where its grip is after a second in which a hand 1 cm away pulls at the replica.
+double pulled_to(double mass, const std::shared_ptr<const BodyCuts>& cuts) {
+  Scene scene = test::one_grip_scene();
+  scene.gravity = glm::dvec3(0.0);
+  scene.bodies[0].motion = BodyMotion::kFree;
+  scene.bodies[0].mass = {mass, glm::dvec3(0.0), glm::dmat3(1e-3)};
+  HeldBodies held(scene, Coupling::kReplica);
+  std::int64_t now_ns = to_nanoseconds(10.0);
+  Pose hand;
+  hand.position.x = 0.01;
+  BodyMessage message;
+  for (int i = 0; i < 1005; ++i, now_ns += 1'000'000) {
+    const bool fresh = i % 10 == 0;
+    if (fresh) {
+      message = test::ServoKit::first();
+      message.rate = 1.0;
+      message.time_step = 0.01;
+      message.stamp_ns = now_ns;
+      message.bodies.tick = static_cast<std::uint64_t>(1 + i / 10);
+      message.bodies.time = 0.001 * i;
+      message.bodies.grips[0].on_hand.force.x = 1e-6;
+      message.bodies.cuts = cuts;
+      message.fluid_models.emplace_back().tick = message.bodies.tick;
+    }
+    held.update(message, fresh, now_ns);
+    held.sent(0, {}, i >= 1000, hand, Twist{}, 0.0, false);
+    held.advance(now_ns + 1'000'000, 1.0, 0.001);
+  }
+  return held.grip(0, GripState{}).pose.position.x;
+}
+
+TEST(HeldBodies, APartThatWasCutOffHasItsOwnMass) {
+  const auto cuts = std::make_shared<BodyCuts>();
+  cuts->bodies.push_back({{{{1.0, 0.0, 0.0}, 0.0}}, {0.05, glm::dvec3(0.0), glm::dmat3(1e-3)}});
+  const double whole = pulled_to(0.2, nullptr), part = pulled_to(0.05, nullptr);
+  EXPECT_GT(part, 1.2 * whole) << "the same pull moves it farther";
+  EXPECT_EQ(pulled_to(0.2, cuts), part);
+}
+
 }  // namespace
 }  // namespace slosh

@@ -71,6 +71,7 @@ struct NoMeshes final : MeshSink {
                       std::span<const glm::vec2>) override {
     return next++;
   }
+  void remove_mesh(MeshHandle) override {}
   TextureHandle add_texture(const TextureImage&) override { return {}; }
   MeshHandle next = 0;
 };

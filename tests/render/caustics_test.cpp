@@ -131,6 +131,7 @@ struct Photons {
                         std::span<const glm::vec2>) override {
       return 0;
     }
+    void remove_mesh(MeshHandle) override {}
     TextureHandle add_texture(const TextureImage&) override { return kNoTexture; }
   } meshes;
   Waves waves;

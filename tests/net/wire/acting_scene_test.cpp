@@ -110,6 +110,45 @@ TEST(ActingScene, WhatComesAndGoesTravelsToo) {
   refused("is of a fixed body");
 }
 
+TEST(ActingScene, WhatMayBeCutAndWhatCutsTravelToo) {
+  Scene scene = test::small_scene();
+  const std::size_t butter = scene.bodies.size();
+  Body body = scene.bodies[1];
+  body.motion = BodyMotion::kFree;
+  body.mass = {1.0, glm::dvec3(0.0), glm::dmat3(1.0)};
+  body.keys.clear();
+  body.pieces = 2;
+  body.cut_n_m = 40.0;
+  scene.bodies.push_back(body);
+  body.pieces = 0;
+  body.piece_of = static_cast<int>(butter);
+  body.starts_away = true;
+  scene.bodies.push_back(body);
+  body = scene.bodies[butter];
+  body.pieces = 0;
+  body.cut_n_m = 0.0;
+  body.blade = true;
+  scene.bodies.push_back(body);
+  const Bytes all = packed(scene);
+  EXPECT_EQ(all[0], 8);
+  const Result<UnpackedScene> back = unpack_scene(all);
+  ASSERT_TRUE(static_cast<bool>(back)) << back.error().text();
+  test::expect_same_scene(back.value().scene, scene);
+  EXPECT_EQ(packed(scene, SceneParts::kSeen)[0], 1) << "a peer is told of cuts as they are made";
+  const auto refused = [&](const char* why) {
+    const std::string said = pack_scene(scene, 0.01, SceneParts::kAll).error().text();
+    EXPECT_NE(said.find(why), std::string::npos) << said;
+  };
+  scene.bodies[butter + 1].piece_of = static_cast<int>(butter) + 2;
+  refused("cannot be cut");
+  scene.bodies[butter + 1].piece_of = static_cast<int>(butter);
+  scene.bodies[butter].pieces = 0;
+  EXPECT_NE(test::package_error(packed(scene)).find("is of a body that cannot be cut"), std::string::npos);
+  scene.bodies[butter].pieces = 2;
+  scene.bodies[butter + 2].motion = BodyMotion::kFixed;
+  refused("is a fixed body's");
+}
+
 // A goal that says it has more parts than come, and one with a part too many.
 TEST(ActingScene, GoalsThatDoNotFitTheirStepsAreRefused) {
   wire::ActingScene acting{

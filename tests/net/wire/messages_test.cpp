@@ -40,6 +40,13 @@ M drawn(std::uint64_t seed, std::size_t least_list = 0) {
   if constexpr (std::is_same_v<M, SnapshotFeedback>) {
     for (BlockRange& range : message.missing) range.count = std::min(range.count, 0x1000000 - range.first);
   }
+  if constexpr (std::is_same_v<M, Cuts>) {
+    for (CutEntry& entry : message.bodies) {
+      for (CutPlane& plane : entry.cut.planes) plane.normal = {0.6, 0.0, 0.8};
+      entry.cut.mass.mass = std::max(entry.cut.mass.mass, 1.0);
+      entry.cut.mass.inertia = glm::dmat3(2.0);
+    }
+  }
   return message;
 }
 

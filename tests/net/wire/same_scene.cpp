@@ -91,6 +91,10 @@ void expect_same_scene(const Scene& a, const Scene& b) {
     SAME(bodies[i].temperature);
     SAME(bodies[i].repeats);
     SAME(bodies[i].starts_away);
+    SAME(bodies[i].pieces);
+    SAME(bodies[i].piece_of);
+    SAME(bodies[i].cut_n_m);
+    SAME(bodies[i].blade);
     expect_same_keys(a.bodies[i].keys, b.bodies[i].keys);
   }
   for (std::size_t i = 0; i < a.pictures.size(); ++i) {

@@ -318,7 +318,7 @@ TEST(ScenePackage, ALyingSizeIsNotBelieved) {
   EXPECT_NE(package_error(liar).find("claims to be 62914560 bytes"), std::string::npos)
       << package_error(liar);
   EXPECT_NE(package_error(Bytes{1, 1, 'x', 'y'}).find("does not begin as zstd does"), std::string::npos);
-  EXPECT_NE(package_error(Bytes{8, 0}).find("its version is 8"), std::string::npos);
+  EXPECT_NE(package_error(Bytes{9, 0}).find("its version is 9"), std::string::npos);
   EXPECT_NE(package_error(Bytes{1, 7}).find("its coding is 7"), std::string::npos);
 }
 

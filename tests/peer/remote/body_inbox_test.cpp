@@ -352,6 +352,31 @@ TEST(BodyInbox, SparseStatesCountAsLongTicks) {
   EXPECT_NEAR(kit.inbox.state().time_step, 0.016, 0.001) << "a device loop carries on by two of them";
 }
 
+TEST(BodyInbox, CutsHoldFromTheirTickOnInTheirRun) {
+  Inbox box;
+  const auto left = [&](std::uint64_t tick, std::uint32_t run = 0) -> double {
+    wire::Bodies m = state(tick);
+    m.run = run;
+    box.take(m);
+    EXPECT_NE(box.inbox.next(m.stamp_ns + to_nanoseconds(1.0), box.clock), nullptr);
+    const BodyCuts* cuts = box.inbox.state().bodies.cuts.get();
+    return cuts && cuts->of(0) ? cuts->of(0)->mass.mass : 0.0;
+  };
+  const auto cut = [&](std::uint64_t since, double mass) {
+    wire::Cuts cuts{0, since, {{0, {{{{1.0, 0.0, 0.0}, 0.1}}, {mass, {}, glm::dmat3(1.0)}}}}};
+    cuts.bodies.push_back({7, cuts.bodies[0].cut});  // a body that the scene has not
+    box.inbox.take(cuts);
+  };
+  EXPECT_EQ(left(1), 0.0);
+  cut(3, 0.5);
+  EXPECT_EQ(left(2), 0.0) << "it came before its state";
+  EXPECT_EQ(left(3), 0.5);
+  EXPECT_EQ(left(6), 0.5);
+  cut(5, 0.25);
+  EXPECT_EQ(left(7), 0.25) << "it came after its state";
+  EXPECT_EQ(left(8, 1), 0.0) << "the world was reset";
+}
+
 wire::FluidWrench wrench_on(std::uint32_t body, std::uint64_t tick, double force, std::uint32_t run = 0) {
   wire::FluidWrench m;
   m.run = run;

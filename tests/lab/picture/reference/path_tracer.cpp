@@ -242,6 +242,10 @@ class EmbreeTracer : public PathTracer {
     return static_cast<MeshHandle>(meshes_.size() - 1);
   }
 
+  void remove_mesh(MeshHandle mesh) override {
+    if (mesh < meshes_.size()) meshes_[mesh] = {};
+  }
+
   TextureHandle add_texture(const TextureImage& image) override {
     if (image.width < 1 || image.height < 1 ||
         image.rgba.size() <
