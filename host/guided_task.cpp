@@ -67,6 +67,15 @@ double GuidedTask::measure_region(const Goal& goal) const {
   }
 }
 
+double GuidedTask::pieces_of(int body) const {
+  double there = 0.0;
+  for (std::size_t b = 0; b < scene_.bodies.size(); ++b) {
+    const bool of_it = static_cast<int>(b) == body || scene_.bodies[b].piece_of == body;
+    if (of_it && !bodies_.bodies[b].gone) there += 1.0;
+  }
+  return there;
+}
+
 double GuidedTask::measure(const Goal& goal) const {
   if (of_region(goal.kind)) return measure_region(goal);
   switch (goal.kind) {
@@ -82,6 +91,8 @@ double GuidedTask::measure(const Goal& goal) const {
     case GoalKind::kDistance:
       return glm::distance(bodies_.bodies[at(goal.thing)].center_of_mass,
                            bodies_.bodies[at(goal.other)].center_of_mass);
+    case GoalKind::kPieces:
+      return pieces_of(goal.thing);
     case GoalKind::kForce:
       return glm::length(bodies_.grips[at(goal.thing)].on_hand.force);
     default:

@@ -49,6 +49,7 @@ class GuidedTask {
   bool met(const Goal& goal) const;
   /// The first leaf that keeps `goal` from being met; the first one where it is.
   const Goal* asked_of(const Goal& goal) const;
+  double pieces_of(int body) const;
   double measure_region(const Goal& goal) const;
   void look(const World& world);
 

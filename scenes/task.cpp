@@ -22,7 +22,7 @@ std::string joined(const std::vector<Goal>& parts, const char* between, const Sc
 }  // namespace
 
 std::vector<const Goal*> leaves_of(const Goal& goal) {
-  if (goal.kind < GoalKind::kAll) return {&goal};
+  if (!of_parts(goal.kind)) return {&goal};
   std::vector<const Goal*> all;
   for (const Goal& part : goal.parts)
     for (const Goal* leaf : leaves_of(part)) all.push_back(leaf);
@@ -47,6 +47,7 @@ const char* unit_of(GoalKind kind) {
       return "m/s";
     case GoalKind::kForce:
       return "N";
+    case GoalKind::kPieces:
     case GoalKind::kSet:
     case GoalKind::kEvenness:
     case GoalKind::kMixing:
@@ -93,6 +94,8 @@ std::string measured_in_words(const Goal& goal, const Scene& scene) {
       return goal.name + " from " + scene.bodies[other].name;
     case GoalKind::kForce:
       return "force on " + goal.name;
+    case GoalKind::kPieces:
+      return "pieces of " + goal.name;
     case GoalKind::kAll:
     case GoalKind::kAny:
     case GoalKind::kNot:

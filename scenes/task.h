@@ -27,7 +27,12 @@ enum class GoalKind : std::uint8_t {
   kAll,          ///< every part is met
   kAny,          ///< some part is
   kNot,          ///< its one part is not
+  kPieces,       ///< how many of a body's pieces are in the world, itself among them
 };
+/// Whether it is put together from others.
+constexpr bool of_parts(GoalKind kind) {
+  return kind == GoalKind::kAll || kind == GoalKind::kAny || kind == GoalKind::kNot;
+}
 
 struct Goal {
   GoalKind kind = GoalKind::kAll;
@@ -107,7 +112,7 @@ std::string in_words(const Goal& goal, const Scene& scene);
 std::string in_words(const TaskAct& act, const Scene& scene);
 /// Of a goal that measures something, what that is: "fluid in pan_inside".
 std::string measured_in_words(const Goal& goal, const Scene& scene);
-/// Of what a kind measures: "kg"; empty for the last three.
+/// Of what a kind measures: "kg"; empty for shares, and for goals of parts.
 const char* unit_of(GoalKind kind);
 
 }  // namespace slosh

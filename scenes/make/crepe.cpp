@@ -1,5 +1,5 @@
 // A crêpe: batter is stirred, poured into a hot pan, spread, pressed flat once it has set, and slid onto a
-// plate, where butter melts on it and syrup is poured (paper, section 6.5).
+// plate, where a slice of butter that was cut meanwhile melts, and syrup is poured (paper, section 6.5).
 #include <cmath>
 #include <glm/gtc/constants.hpp>
 
@@ -30,6 +30,10 @@ constexpr double kPourBegins = 2.5;  ///< s that bowl and pan are behind their k
 // What comes later hangs where a hand takes it.
 const glm::dvec3 kSpatulaAt(0.02, 0.24, -0.2);
 const glm::dvec3 kPlateAt(-0.31, 0.0, 0.0);
+const glm::dvec3 kBoardAt(-0.12, 0.0, 0.2);
+constexpr double kBoardTop = 0.012;
+const glm::dvec3 kButterHalf(0.04, 0.012, 0.012);  ///< m, of the block's length, height and width
+constexpr double kSlice = 0.014;                   ///< m of the block that is cut off
 const glm::dvec3 kLadleAt(-0.415, 0.11, 0.0);
 constexpr double kLadleBelowRim = 0.006;  ///< of the syrup
 
@@ -71,6 +75,13 @@ Solid spatula() {
   const double half = 0.03, thick = 0.012, rod = 0.006;
   return merged(box({-half, 0.0, -half}, {half, thick, half}),
                 lathe({{0.0, thick}, {rod, thick}, {rod, 0.2}, {0.0, 0.2}}, 24));
+}
+
+/// A blade as thick as particles need, and a handle behind it.
+Solid knife() {
+  const double half = 0.06, high = 0.032, thick = 0.005;
+  return merged(box({-half, 0.0, -thick}, {half, high, thick}),
+                box({half, 0.014, -thick}, {half + 0.1, high, thick}));
 }
 
 Solid plate() {
@@ -125,6 +136,13 @@ Pose spatula_pose(double time) {
   return {glm::mix(kSpatulaAt, over_pan, along), {1.0, 0.0, 0.0, 0.0}};
 }
 
+/// Down through the butter, its edge across it, the handle towards the person.
+Pose knife_pose(double time) {
+  const double up = follow({{15.0, 0.11}, {15.8, 0.03}, {17.2, -0.006}, {17.8, -0.006}, {18.6, 0.11}}, time);
+  const glm::dvec3 over_slice(-kButterHalf.x + kSlice, kBoardTop + up, -0.03);
+  return {kBoardAt + over_slice, glm::angleAxis(-glm::half_pi<double>(), glm::dvec3(0.0, 1.0, 0.0))};
+}
+
 Pose ladle_pose(double time) {
   const double angle = glm::radians(follow({{33.5, 0.0}, {35.0, 37.0}, {35.2, 37.0}, {36.2, 0.0}}, time));
   const glm::dquat turn = glm::angleAxis(-angle, glm::dvec3(0.0, 0.0, 1.0));
@@ -151,8 +169,14 @@ nlohmann::json crepe_steps() {
        {"until", all(of("spread_m2", "pan_inside", 0.025), of("evenness", "pan_inside", 0.65))},
        {"hold_s", 1.5},
        {"then", json::array({{{"takes_away", "whisk_body"}},
+                             {{"appears", "knife_body"}},
+                             {{"hand", "whisk"}, {"takes", "knife"}}})}},
+      {{"say", "While it sets, cut a slice off the butter with the knife."},
+       {"hint", "Straight down, until the knife is on the board."},
+       {"until", {{"pieces", "butter_block"}, {"at_least", 2}}},
+       {"then", json::array({{{"takes_away", "knife_body"}},
                              {{"appears", "spatula_body"}},
-                             {{"hand", "whisk"}, {"takes", "spatula"}}})}},
+                             {{"hand", "knife"}, {"takes", "spatula"}}})}},
       {{"say", "Let it set."},
        {"until", of("set", "pan_inside", 0.9)},
        {"then", json::array({{{"takes_away", "batter"}, {"in", "bowl_inside"}},
@@ -164,7 +188,9 @@ nlohmann::json crepe_steps() {
        {"hold_s", 0.2}},
       {{"say", "Tilt the pan over the plate until the crêpe slides onto it."},
        {"until", of("mass_kg", "plate_top", 0.15)},
-       {"then", json::array({{{"takes_away", "spatula_body"}}, {{"appears", "butter"}}})}},
+       {"then", json::array({{{"takes_away", "spatula_body"}},
+                             {{"takes_away", "butter_block~2"}},
+                             {{"appears", "butter"}}})}},
       {{"say", "Let the butter melt on it."},
        {"until", {{"set", "plate_top"}, {"fluid", "butter"}, {"at_most", 0.4}}},
        {"then", json::array({{{"appears", "ladle_body"}},
@@ -276,6 +302,21 @@ SceneWriter make_crepe() {
   spatula_body["starts_away"] = true;
   const int spatula_node = writer.add_node("spatula_body", writer.add_mesh("spatula", spatula(), steel),
                                            spatula_pose(0.0), spatula_body);
+  const int wood = writer.add_material("beech", {{0.62, 0.42, 0.24, 1.0}, 0.0, 0.55});
+  const int fat = writer.add_material("butter", {{0.96, 0.82, 0.36, 1.0}, 0.0, 0.45});
+  writer.add_node("board",
+                  writer.add_mesh("board", box({-0.075, 0.0, -0.045}, {0.075, kBoardTop, 0.045}), wood),
+                  {kBoardAt, {1.0, 0.0, 0.0, 0.0}}, {{"slosh", "body"}});
+  writer.add_node(
+      "butter_block", writer.add_mesh("butter_block", box(-kButterHalf, kButterHalf), fat),
+      {kBoardAt + glm::dvec3(0.0, kBoardTop + kButterHalf.y, 0.0), {1.0, 0.0, 0.0, 0.0}},
+      {{"slosh", "body"}, {"motion", "free"}, {"density_kg_m3", 910.0}, {"pieces", 2}, {"cut_n_m", 150.0}});
+  nlohmann::json knife_body = free_body;
+  knife_body["mass_kg"] = 0.12;
+  knife_body["starts_away"] = true;
+  knife_body["blade"] = true;
+  const int knife_node =
+      writer.add_node("knife_body", writer.add_mesh("knife", knife(), steel), knife_pose(0.0), knife_body);
   nlohmann::json ladle_body = free_body;
   ladle_body["mass_kg"] = 0.2;
   ladle_body["starts_away"] = true;
@@ -296,6 +337,8 @@ SceneWriter make_crepe() {
            kCrepeDuration);
   add_held(writer, "pan", pan_node, {{0.19, 0.024, 0.0}, {1.0, 0.0, 0.0, 0.0}}, 2, pan_pose, kCrepeDuration);
   add_held(writer, "spatula", spatula_node, {{0.0, 0.17, 0.0}, {1.0, 0.0, 0.0, 0.0}}, 3, spatula_pose,
+           kCrepeDuration);
+  add_held(writer, "knife", knife_node, {{0.09, 0.024, 0.0}, {1.0, 0.0, 0.0, 0.0}}, 5, knife_pose,
            kCrepeDuration);
   add_held(writer, "ladle", ladle_node, {{-0.09, kLadle.bar_height(), 0.0}, {1.0, 0.0, 0.0, 0.0}}, 4,
            ladle_pose, kCrepeDuration);

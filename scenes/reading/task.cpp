@@ -23,7 +23,7 @@ constexpr Measured kMeasured[] = {
     {"evenness", GoalKind::kEvenness, "region"}, {"mixing", GoalKind::kMixing, "region"},
     {"level_m", GoalKind::kLevel, "gauge"},      {"tilt_deg", GoalKind::kTilt, "body"},
     {"speed_m_s", GoalKind::kSpeed, "body"},     {"distance_m", GoalKind::kDistance, "body"},
-    {"force_n", GoalKind::kForce, "grip"},
+    {"force_n", GoalKind::kForce, "grip"},       {"pieces", GoalKind::kPieces, "body"},
 };
 struct Together {
   const char* key;
@@ -105,7 +105,7 @@ class Goals {
            "Give one of " + known_kinds() + "all, any, not; several goals go together by all or any");
       return goal;
     }
-    if (goal.kind < GoalKind::kAll) read_limits(fields, owner, goal);
+    if (!of_parts(goal.kind)) read_limits(fields, owner, goal);
     for (const std::vector<Error>& wrong : {fields.errors(), fields.foreign()})
       errors.insert(errors.end(), wrong.begin(), wrong.end());
     return goal;
@@ -158,6 +158,9 @@ class Goals {
     if (of_region(goal.kind) && fields.has("fluid"))
       goal.other = find(fields.text("fluid", ""), reading::names_of(reading_.scene.fluids), "fluid",
                         owner + ": extras.fluid");
+    if (goal.kind == GoalKind::kPieces && goal.thing >= 0 &&
+        reading_.scene.bodies[static_cast<std::size_t>(goal.thing)].pieces == 0)
+      fields.fail("pieces", "names a body that cannot be cut", "Give '" + goal.name + "' pieces = 2 or more");
     if (goal.kind == GoalKind::kDistance)
       goal.other = find(fields.text("to", ""), names_of(GoalKind::kDistance), "body", owner + ": extras.to");
   }
