@@ -19,7 +19,7 @@ using testing::run_for;
 using testing::state_of;
 
 const glm::dvec3 kUp(0, 1, 0);
-constexpr double kG = 9.81;
+constexpr double kGravity = 9.81;
 
 // Momentum, and angular momentum about the origin.
 Twist momenta_of(const Linkage& link, const BodySnapshot& state) {
@@ -54,14 +54,14 @@ TEST(FixedJoint, CarriesAWeightByItsForceAndItsTorque) {
   World world = bracket(0.0, 0.0).world();
   run_for(world, 0.5);
   const BodySnapshot state = state_of(world);
-  EXPECT_NEAR(glm::distance(state.joints[0].reaction.force, glm::dvec3(0, 2.0 * kG, 0)), 0.0, 1e-9);
-  EXPECT_NEAR(glm::distance(state.joints[0].reaction.torque, glm::dvec3(0, 0, 0.2 * 2.0 * kG)), 0.0, 1e-9);
+  EXPECT_NEAR(glm::distance(state.joints[0].reaction.force, glm::dvec3(0, 2.0 * kGravity, 0)), 0.0, 1e-9);
+  EXPECT_NEAR(glm::distance(state.joints[0].reaction.torque, glm::dvec3(0, 0, 0.2 * 2.0 * kGravity)), 0.0, 1e-9);
   EXPECT_NEAR(glm::distance(state.bodies[0].pose.position, glm::dvec3(0.2, 0, 0)), 0.0, 1e-10);
   EXPECT_TRUE(state.joints[0].joined);
 }
 
 TEST(FixedJoint, BreaksAboveWhatItBearsAndNotBelow) {
-  constexpr double kForce = 2.0 * kG, kTorque = 0.2 * 2.0 * kG, kAway = 1e-6;
+  constexpr double kForce = 2.0 * kGravity, kTorque = 0.2 * 2.0 * kGravity, kAway = 1e-6;
   const auto falls = [](double force, double torque) {
     World world = bracket(force, torque).world();
     run_for(world, 0.1);
@@ -78,7 +78,7 @@ TEST(FixedJoint, BreaksAboveWhatItBearsAndNotBelow) {
 // A seam of several: they hold one thing several times, and share its weight in a way that statics leaves
 // open.
 TEST(FixedJoint, SeveralOfOnePairShareItsWeight) {
-  for (const double breaks : {0.0, 0.4 * kG}) {
+  for (const double breaks : {0.0, 0.4 * kGravity}) {
     Linkage link;
     const int body = link.add(2.0, glm::dvec3(0.01));
     for (const double x : {-0.1, 0.0, 0.1})
@@ -92,10 +92,10 @@ TEST(FixedJoint, SeveralOfOnePairShareItsWeight) {
     }
     glm::dvec3 sum(0.0);
     for (const JointState& joint : state.joints) {
-      EXPECT_GT(joint.reaction.force.y, 0.1 * 2.0 * kG);
+      EXPECT_GT(joint.reaction.force.y, 0.1 * 2.0 * kGravity);
       sum += joint.reaction.force;
     }
-    EXPECT_NEAR(glm::distance(sum, glm::dvec3(0, 2.0 * kG, 0)), 0.0, 1e-6);
+    EXPECT_NEAR(glm::distance(sum, glm::dvec3(0, 2.0 * kGravity, 0)), 0.0, 1e-6);
     EXPECT_LT(glm::length(state.bodies[0].pose.position), 1e-8);
   }
 }
@@ -104,7 +104,7 @@ TEST(FixedJoint, SeveralOfOnePairShareItsWeight) {
 TEST(FixedJoint, ThatBreaksLeavesAHingeBesideIt) {
   Linkage link;
   add_pendulum(link, 1.0, 0.01, 0.3, 1.0);
-  link.join(JointKind::kFixed, 0, -1, {}).breaks_torque = 0.9 * 0.3 * kG * std::sin(1.0);
+  link.join(JointKind::kFixed, 0, -1, {}).breaks_torque = 0.9 * 0.3 * kGravity * std::sin(1.0);
   World world = link.world();
   run_for(world, 0.3);
   const BodySnapshot state = state_of(world);
@@ -118,8 +118,8 @@ TEST(FixedJoint, ThatBreaksLeavesAHingeBesideIt) {
 TEST(Hinge, BreaksByTheSwingOfWhatHangsOnIt) {
   constexpr double kMass = 1.0, kInertia = 0.01, kLength = 0.3, kAngle = 1.0;
   const double square =
-      2.0 * kMass * kG * kLength * (1.0 - std::cos(kAngle)) / (kInertia + kMass * kLength * kLength);
-  const double pull = kMass * (kG + square * kLength);
+      2.0 * kMass * kGravity * kLength * (1.0 - std::cos(kAngle)) / (kInertia + kMass * kLength * kLength);
+  const double pull = kMass * (kGravity + square * kLength);
   for (const double share : {0.999, 1.001}) {
     Linkage link;
     add_pendulum(link, kMass, kInertia, kLength, kAngle);
@@ -248,7 +248,7 @@ TEST(FixedJoint, ClosesAgainOnlyWhereItSaysFromWhere) {
     Linkage link;
     const int ball = link.add(1.0, glm::dvec3(0.01));
     Joint& joint = link.join(JointKind::kFixed, ball, -1, {});
-    joint.breaks_force = 0.9 * kG;
+    joint.breaks_force = 0.9 * kGravity;
     joint.joins_within = within;
     joint.joins_turn = 0.1;
     Grip grip;
@@ -270,7 +270,7 @@ TEST(FixedJoint, ClosesAgainOnlyWhereItSaysFromWhere) {
     };
     go(-0.05);
     EXPECT_FALSE(state_of(world).joints[0].joined);
-    go(kG / grip.stiffness);  // it hangs where it was
+    go(kGravity / grip.stiffness);  // it hangs where it was
     EXPECT_EQ(state_of(world).joints[0].joined, within > 0.0);
   }
 }
