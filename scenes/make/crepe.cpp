@@ -136,10 +136,11 @@ Pose spatula_pose(double time) {
   return {glm::mix(kSpatulaAt, over_pan, along), {1.0, 0.0, 0.0, 0.0}};
 }
 
-/// Down through the butter, its edge across it, the handle towards the person.
+/// Down through the butter, its edge across it, the handle towards the person; then aside with the slice.
 Pose knife_pose(double time) {
-  const double up = follow({{15.0, 0.11}, {15.8, 0.03}, {17.2, -0.006}, {17.8, -0.006}, {18.6, 0.11}}, time);
-  const glm::dvec3 over_slice(-kButterHalf.x + kSlice, kBoardTop + up, -0.03);
+  const double up = follow({{14.6, 0.11}, {15.2, 0.03}, {16.4, -0.006}, {17.4, -0.006}, {18.2, 0.11}}, time);
+  const double aside = follow({{16.5, 0.0}, {17.2, -0.02}}, time);
+  const glm::dvec3 over_slice(aside - kButterHalf.x + kSlice, kBoardTop + up, -0.03);
   return {kBoardAt + over_slice, glm::angleAxis(-glm::half_pi<double>(), glm::dvec3(0.0, 1.0, 0.0))};
 }
 
@@ -174,6 +175,7 @@ nlohmann::json crepe_steps() {
       {{"say", "While it sets, cut a slice off the butter with the knife."},
        {"hint", "Straight down, until the knife is on the board."},
        {"until", {{"pieces", "butter_block"}, {"at_least", 2}}},
+       {"hold_s", 0.8},
        {"then", json::array({{{"takes_away", "knife_body"}},
                              {{"appears", "spatula_body"}},
                              {{"hand", "knife"}, {"takes", "spatula"}}})}},
