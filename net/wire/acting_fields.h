@@ -17,58 +17,29 @@ struct SentGoal {
   std::uint32_t parts = 0;
 };
 
-/// What of a body only acts where it is.
-struct BodyActs {
-  std::optional<double> temperature;  ///< °C
-  std::vector<PoseKey> keys;
-  bool repeats = false;
+/// How much of a scene a package has: each version what those before it have, and more.
+enum SceneVersion : std::uint8_t {
+  kPlainScene = 1,
+  kMeasuredScene,  ///< gauges and regions
+  kSettledScene,   ///< settling before the run
+  kLookedScene,    ///< how fluids look beyond their colour
+  kTexturedScene,  ///< textures, and light of bodies' own
+  kActingScene,    ///< heat, driven bodies, joints, a task
+  kComingScene,  ///< bodies and fluids that come and go, joints that let go or close, steps that do something
+  kCutScene,     ///< bodies that may be cut
 };
 
-/// The same of a scene that passes heat, drives bodies, joins them, or guides through a task.
-struct ActingScene {
-  TexturedScene textured;
-  std::vector<Heat> heats;     ///< one a fluid
-  std::vector<BodyActs> acts;  ///< one a body
-  std::vector<Joint> joints;
-  std::vector<TaskStep> task;   ///< without their goals
-  std::vector<SentGoal> goals;  ///< of one step after the other
+/// What travels.
+struct PackedScene {
+  Scene scene;                    ///< on the way without the goals of its task
+  double spacing = 0.01;          ///< m, of its particles
+  std::vector<SentGoal> goals{};  ///< those of one step after the other's
 };
 
-/// How a joint lets go and closes.
-struct JointChanges {
-  double breaks_force = 0.0, breaks_torque = 0.0, joins_within = 0.0, joins_turn = 0.0;
-  bool starts_apart = false;
-  std::optional<Pose> meets;
-};
-
-/// What of a fluid volume only matters where it is filled while the world runs.
-struct VolumeComes {
-  bool starts_away = false;
-  int fillings = 1;
-  int body = -1;
-};
-
-/// The same of a scene in which bodies or fluids come and go, joints let go or close, or steps of a task do
-/// something.
-struct ComingScene {
-  ActingScene acting;
-  std::vector<VolumeComes> volumes;             ///< one a fluid volume
-  std::vector<std::uint8_t> starts_away;        ///< one a body
-  std::vector<std::vector<TaskAct>> step_acts;  ///< one a step of the task
-  std::vector<JointChanges> joint_changes;      ///< one a joint
-};
-
-/// How a body is cut, or cuts.
-struct BodyCutting {
-  int pieces = 0, piece_of = -1;
-  double cut_n_m = 0.0;
-  bool blade = false;
-};
-
-/// The same of a scene in which bodies may be cut.
-struct CutScene {
-  ComingScene coming;
-  std::vector<BodyCutting> cutting;  ///< one a body
+/// The same in one version.
+template <SceneVersion Version>
+struct SceneAt {
+  PackedScene packed;
 };
 
 constexpr double kNoLimit = 1e300;  ///< stands for none: an infinity is no number here
@@ -78,6 +49,14 @@ inline double finite_limit(double limit) {
 inline double open_limit(double limit) {
   const double none = std::numeric_limits<double>::infinity();
   return limit >= kNoLimit ? none : limit <= -kNoLimit ? -none : limit;
+}
+
+/// Where there may be none.
+template <class V>
+void visit_limit(V& v, const char* name, double& limit) {
+  double sent = finite_limit(limit);
+  v.real64(name, sent, -kNoLimit, kNoLimit);
+  limit = open_limit(sent);
 }
 
 template <class V>
@@ -92,10 +71,10 @@ void visit(V& v, Heat& m) {
     before = point.temperature;
     each.real64("times", point.times, 1e-16, 1e16);
   });
-  v.real64("sets_above", m.sets_above, -kNoLimit, kNoLimit);
-  v.real64("sets_below", m.sets_below, -kNoLimit, kNoLimit);
+  visit_limit(v, "sets_above", m.sets_above);
+  visit_limit(v, "sets_below", m.sets_below);
   v.real64("sets_in", m.sets_in, 0.0, 86400.0);
-  v.real64("melts_above", m.melts_above, -kNoLimit, kNoLimit);
+  visit_limit(v, "melts_above", m.melts_above);
   v.real64("melts_in", m.melts_in, 0.0, 86400.0);
   v.real64("modulus", m.modulus, 0.0, 1e9);
   v.real64("tears_at", m.tears_at, 0.0, 10.0);
@@ -142,8 +121,9 @@ void visit(V& v, TaskStep& m) {
   v.real64("hint_after", m.hint_after, 0.0, 3600.0);
 }
 
+/// What of a body only acts where it is.
 template <class V>
-void visit(V& v, BodyActs& m) {
+void visit_acts(V& v, Body& m) {
   bool given = m.temperature.has_value();
   double celsius = m.temperature.value_or(0.0);
   v.flag("keeps", given);
@@ -166,15 +146,12 @@ inline bool can_be_joined(const Scene& scene, const Joint& joint) {
 }
 
 template <class V>
-void visit(V& v, ActingScene& m) {
-  visit(v, m.textured);
-  const Scene& scene = m.textured.looked.settled.measured.packed.scene;
-  v.list_as_long("heats", m.heats, "fluids", scene.fluids.size(),
-                 [](auto& each, Heat& heat) { visit(each, heat); });
-  v.list_as_long("acts", m.acts, "bodies", scene.bodies.size(),
-                 [](auto& each, BodyActs& body) { visit(each, body); });
+void visit_acting(V& v, PackedScene& m) {
+  Scene& scene = m.scene;
+  v.each_of("heats", scene.fluids, "fluids", [](auto& each, Fluid& fluid) { visit(each, fluid.heat); });
+  v.each_of("acts", scene.bodies, "bodies", [](auto& each, Body& body) { visit_acts(each, body); });
   const std::size_t bodies = scene.bodies.size();
-  v.list("joints", m.joints, kMaxJoints, [&scene, bodies](auto& each, Joint& joint) {
+  v.list("joints", scene.joints, kMaxJoints, [&scene, bodies](auto& each, Joint& joint) {
     each.text("name", joint.name, kMaxText);
     each.choice("kind", joint.kind, kJointKindNames);
     each.index("body", joint.body, "bodies", bodies, false);
@@ -188,20 +165,21 @@ void visit(V& v, ActingScene& m) {
     each.real64("motor_speed", joint.motor_speed, -1000.0, 1000.0);
     each.real64("motor_limit", joint.motor_limit, 0.0, 1e6);
   });
-  v.list("task", m.task, kMaxTaskSteps, [](auto& each, TaskStep& step) { visit(each, step); });
+  v.list("task", scene.task, kMaxTaskSteps, [](auto& each, TaskStep& step) { visit(each, step); });
   v.list("goals", m.goals, kMaxSentGoals, [&scene](auto& each, SentGoal& sent) {
     each.choice("kind", sent.goal.kind, kGoalKindNames);
     each.index("thing", sent.goal.thing, "bodies", kMaxBodies, true);
     each.index("other", sent.goal.other, "bodies", kMaxBodies, true);
     each.rule("thing", has_thing(scene, sent.goal), "is not in the scene");
-    each.real64("at_least", sent.goal.at_least, -kNoLimit, kNoLimit);
-    each.real64("at_most", sent.goal.at_most, -kNoLimit, kNoLimit);
+    visit_limit(each, "at_least", sent.goal.at_least);
+    visit_limit(each, "at_most", sent.goal.at_most);
     each.natural("parts", sent.parts, 0, kMaxGoalParts);
   });
 }
 
+/// How a joint lets go and closes.
 template <class V>
-void visit(V& v, JointChanges& m) {
+void visit_changes(V& v, Joint& m) {
   v.real64("breaks_force", m.breaks_force, 0.0, 1e6);
   v.real64("breaks_torque", m.breaks_torque, 0.0, 1e6);
   v.real64("joins_within", m.joins_within, 0.0, 10.0);
@@ -230,71 +208,69 @@ inline bool can_act(const Scene& scene, const TaskAct& act) {
 }
 
 template <class V>
-void visit(V& v, ComingScene& m) {
-  visit(v, m.acting);
-  const Scene& scene = m.acting.textured.looked.settled.measured.packed.scene;
-  v.list_as_long("volumes", m.volumes, "fluid_volumes", scene.fluid_volumes.size(),
-                 [&scene](auto& each, VolumeComes& volume) {
-                   each.flag("starts_away", volume.starts_away);
-                   auto fillings = static_cast<std::uint32_t>(volume.fillings);
-                   each.natural("fillings", fillings, 1, kMaxFillings);
-                   volume.fillings = static_cast<int>(fillings);
-                   each.index("body", volume.body, "bodies", scene.bodies.size(), true);
-                 });
-  std::size_t at = 0;
-  v.list_as_long("starts_away", m.starts_away, "bodies", scene.bodies.size(),
-                 [&scene, &at](auto& each, std::uint8_t& away) {
-                   bool is_away = away != 0;
-                   each.flag("away", is_away);
-                   away = is_away;
-                   if (at < scene.bodies.size())
-                     each.rule("away", !is_away || moves(scene.bodies[at].motion), "is of a fixed body");
-                   ++at;
-                 });
-  v.list_as_long("step_acts", m.step_acts, "task", m.acting.task.size(),
-                 [&scene](auto& each, std::vector<TaskAct>& acts) {
-                   each.list("acts", acts, kMaxTaskActs, [&scene](auto& one, TaskAct& act) {
-                     one.choice("kind", act.kind, kTaskActKindNames);
-                     one.index("thing", act.thing, "things", kMaxBodies + kMaxFluidVolumes, false);
-                     one.index("other", act.other, "regions", kMaxInstruments, true);
-                     one.rule("thing", can_act(scene, act), "is not in the scene, or stays there for good");
-                   });
-                 });
-  v.list_as_long("joint_changes", m.joint_changes, "joints", m.acting.joints.size(),
-                 [](auto& each, JointChanges& changes) { visit(each, changes); });
+void visit_coming(V& v, Scene& scene) {
+  v.each_of("volumes", scene.fluid_volumes, "fluid_volumes", [&scene](auto& each, FluidVolume& volume) {
+    each.flag("starts_away", volume.starts_away);
+    auto fillings = static_cast<std::uint32_t>(volume.fillings);
+    each.natural("fillings", fillings, 1, kMaxFillings);
+    volume.fillings = static_cast<int>(fillings);
+    each.index("body", volume.body, "bodies", scene.bodies.size(), true);
+  });
+  v.each_of("starts_away", scene.bodies, "bodies", [](auto& each, Body& body) {
+    each.flag("away", body.starts_away);
+    each.rule("away", !body.starts_away || moves(body.motion), "is of a fixed body");
+  });
+  v.each_of("step_acts", scene.task, "task", [&scene](auto& each, TaskStep& step) {
+    each.list("acts", step.then, kMaxTaskActs, [&scene](auto& one, TaskAct& act) {
+      one.choice("kind", act.kind, kTaskActKindNames);
+      one.index("thing", act.thing, "things", kMaxBodies + kMaxFluidVolumes, false);
+      one.index("other", act.other, "regions", kMaxInstruments, true);
+      one.rule("thing", can_act(scene, act), "is not in the scene, or stays there for good");
+    });
+  });
+  v.each_of("joint_changes", scene.joints, "joints",
+            [](auto& each, Joint& joint) { visit_changes(each, joint); });
 }
 
 /// What World's cuts count on: a free body of a small mesh, whose pieces have the same one and come behind
 /// it.
-inline bool can_be_cut(const Scene& scene, std::size_t index, const BodyCutting& cutting) {
-  if (cutting.pieces == 0 && cutting.piece_of < 0) return true;
-  const Body& body = scene.bodies[index];
+inline bool can_be_cut(const Scene& scene, const Body& body, std::size_t index) {
+  if (body.pieces == 0 && body.piece_of < 0) return true;
   if (body.motion != BodyMotion::kFree || body.point_probe || !below(body.mesh, scene.meshes.size()))
     return false;
-  if (cutting.piece_of < 0) return cutting.pieces >= 2;
-  return cutting.pieces == 0 && below(cutting.piece_of, index) &&
-         scene.bodies[static_cast<std::size_t>(cutting.piece_of)].mesh == body.mesh;
+  if (body.piece_of < 0) return body.pieces >= 2;
+  if (body.pieces > 0 || !below(body.piece_of, index)) return false;
+  const Body& whole = scene.bodies[static_cast<std::size_t>(body.piece_of)];
+  return whole.pieces > 0 && whole.mesh == body.mesh;
 }
 
 template <class V>
-void visit(V& v, CutScene& m) {
-  visit(v, m.coming);
-  const Scene& scene = m.coming.acting.textured.looked.settled.measured.packed.scene;
+void visit_cutting(V& v, Scene& scene) {
   std::size_t at = 0;
-  v.list_as_long("cutting", m.cutting, "bodies", scene.bodies.size(),
-                 [&scene, &at](auto& each, BodyCutting& body) {
-                   auto pieces = static_cast<std::uint32_t>(body.pieces);
-                   each.natural("pieces", pieces, 0, kMaxPieces);
-                   body.pieces = static_cast<int>(pieces);
-                   each.index("piece_of", body.piece_of, "bodies", scene.bodies.size(), true);
-                   each.real64("cut_n_m", body.cut_n_m, 0.0, 1e6);
-                   each.flag("blade", body.blade);
-                   if (at < scene.bodies.size()) {
-                     each.rule("pieces", can_be_cut(scene, at, body), "is of a body that cannot be cut");
-                     each.rule("blade", !body.blade || moves(scene.bodies[at].motion), "is a fixed body's");
-                   }
-                   ++at;
-                 });
+  v.each_of("cutting", scene.bodies, "bodies", [&scene, &at](auto& each, Body& body) {
+    auto pieces = static_cast<std::uint32_t>(body.pieces);
+    each.natural("pieces", pieces, 0, kMaxPieces);
+    body.pieces = static_cast<int>(pieces);
+    each.index("piece_of", body.piece_of, "bodies", scene.bodies.size(), true);
+    each.real64("cut_n_m", body.cut_n_m, 0.0, 1e6);
+    each.flag("blade", body.blade);
+    each.rule("pieces", can_be_cut(scene, body, at++), "is of a body that cannot be cut");
+    each.rule("blade", !body.blade || moves(body.motion), "is a fixed body's");
+  });
+}
+
+template <class V, SceneVersion Version>
+void visit(V& v, SceneAt<Version>& m) {
+  PackedScene& packed = m.packed;
+  v.real64("particle_spacing", packed.spacing, 1e-5, 10.0);
+  visit(v, packed.scene);
+  if constexpr (Version >= kMeasuredScene) visit_instruments(v, packed.scene);
+  if constexpr (Version >= kSettledScene) v.real64("settle", packed.scene.settle, 0.0, kMaxSettle);
+  if constexpr (Version >= kLookedScene) visit_looks(v, packed.scene);
+  if constexpr (Version >= kTexturedScene) visit_textures(v, packed.scene);
+  if constexpr (Version >= kActingScene) visit_acting(v, packed);
+  if constexpr (Version >= kComingScene) visit_coming(v, packed.scene);
+  if constexpr (Version >= kCutScene) visit_cutting(v, packed.scene);
 }
 
 }  // namespace slosh::wire

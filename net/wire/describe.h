@@ -90,6 +90,10 @@ class Describer {
     T element{};
     element_of(name, kUnbounded, [&](Describer& inner) { each(inner, element); });
   }
+  template <class T, class Each>
+  void each_of(std::string_view name, std::vector<T>& values, std::string_view of, Each&& each) {
+    list_as_long(name, values, of, values.size(), each);
+  }
 
  private:
   template <class Visit>

@@ -31,6 +31,7 @@
 //   array(name, array)                           that many bytes, any
 //   list(name, vector, most, each)               varint count of elements; each(visitor, element)
 //   list_as_long(name, vector, of, count, each)  as many elements as another list has
+//   each_of(name, vector, of, each)              the elements that are there already, which `of` says
 //   rule(name, holds, problem)                   nothing on the wire: what must hold between fields
 //
 // A field that is written only in some cases follows a flag or choice: `if (m.flag) v.natural(...)`, or asks

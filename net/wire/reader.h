@@ -150,6 +150,15 @@ class Reader {
     if (count > left()) return fail(name, "ends too early");
     elements(name, values, count, each);
   }
+  template <class T, class Each>
+  void each_of(std::string_view name, std::vector<T>& values, std::string_view, Each&& each) {
+    if (!ok()) return;
+    if (values.size() > left()) return fail(name, "ends too early");
+    const std::size_t outer = path_.size();
+    path_.append(name).push_back('.');
+    for (std::size_t i = 0; i < values.size() && ok(); ++i) each(*this, values[i]);
+    path_.resize(outer);
+  }
   /// A message must use up its bytes.
   void finish() {
     if (ok() && left() > 0) fail("end", std::to_string(left()) + " bytes follow");

@@ -21,36 +21,6 @@ constexpr double kMaxSettle = 60.0;            ///< s
 
 constexpr std::array kBodyMotionNames{"fixed", "free", "driven"};
 
-/// What travels: a scene and the spacing of its particles.
-struct PackedScene {
-  Scene scene;
-  double spacing = 0.01;  ///< m
-};
-
-/// The same of a scene that has gauges or regions.
-struct MeasuredScene {
-  PackedScene packed;
-};
-
-/// The same of a scene that settles before its run.
-struct SettledScene {
-  MeasuredScene measured;
-};
-
-/// The same of a scene that says how its fluids look beyond their colour.
-struct LookedScene {
-  SettledScene settled;
-  std::vector<Fluid> looks;  ///< one a fluid; the rest of each is in the list above
-};
-
-/// The same of a scene with textures or light of its own.
-struct TexturedScene {
-  LookedScene looked;
-  std::vector<std::vector<glm::vec2>> texcoords;  ///< one a mesh
-  std::vector<Material>
-      materials;  ///< one a body, then one a picture; the numbers of each are in the lists above
-};
-
 template <class V>
 void visit_exact(V& v, Pose& m) {
   v.vec3_exact("position", m.position, kMaxPosition);
@@ -199,15 +169,7 @@ void visit(V& v, Scene& m) {
 }
 
 template <class V>
-void visit(V& v, PackedScene& m) {
-  v.real64("particle_spacing", m.spacing, 1e-5, 10.0);
-  visit(v, m.scene);
-}
-
-template <class V>
-void visit(V& v, MeasuredScene& m) {
-  visit(v, m.packed);
-  Scene& scene = m.packed.scene;
+void visit_instruments(V& v, Scene& scene) {
   const std::size_t bodies = scene.bodies.size();
   const std::size_t meshes = scene.meshes.size();
   v.list("gauges", scene.gauges, kMaxInstruments, [bodies](auto& each, Gauge& gauge) {
@@ -223,17 +185,10 @@ void visit(V& v, MeasuredScene& m) {
   });
 }
 
+/// How fluids look beyond their colour.
 template <class V>
-void visit(V& v, SettledScene& m) {
-  visit(v, m.measured);
-  v.real64("settle", m.measured.packed.scene.settle, 0.0, kMaxSettle);
-}
-
-template <class V>
-void visit(V& v, LookedScene& m) {
-  visit(v, m.settled);
-  const std::size_t fluids = m.settled.measured.packed.scene.fluids.size();
-  v.list_as_long("looks", m.looks, "fluids", fluids, [](auto& each, Fluid& fluid) {
+void visit_looks(V& v, Scene& scene) {
+  v.each_of("looks", scene.fluids, "fluids", [](auto& each, Fluid& fluid) {
     each.real32("gloss", fluid.gloss, 0.0, 1.0);
     each.real32("refraction", fluid.refraction, 1.0, 3.0);
     each.real32("scattering", fluid.scattering, 0.0, 1.0);
@@ -255,42 +210,49 @@ void visit(V& v, TextureMap& m, std::size_t images) {
   v.flag("nearest", m.sampling.nearest);
 }
 
+/// Of the bodies, then of the pictures.
+template <class Visit>
+void each_material(Scene& scene, Visit&& visit) {
+  for (Body& body : scene.bodies) visit(body.material);
+  for (Picture& picture : scene.pictures) visit(picture.material);
+}
+
+/// What of a material is not in its body's or picture's own list.
 template <class V>
-void visit(V& v, TexturedScene& m) {
-  visit(v, m.looked);
-  Scene& scene = m.looked.settled.measured.packed.scene;
+void visit_more(V& v, Material& m, std::size_t images) {
+  for (float* channel : {&m.emissive.x, &m.emissive.y, &m.emissive.z})
+    v.real32("emissive", *channel, 0.0, 100.0);
+  v.real32("alpha_cutoff", m.alpha_cutoff, 0.0, 1.0);
+  visit(v, m.maps.base_color, images);
+  visit(v, m.maps.metallic_roughness, images);
+  visit(v, m.maps.normal, images);
+  visit(v, m.maps.occlusion, images);
+  visit(v, m.maps.emissive, images);
+  v.real32("normal_scale", m.maps.normal_scale, -10.0, 10.0);
+  v.real32("occlusion_strength", m.maps.occlusion_strength, 0.0, 1.0);
+}
+
+template <class V>
+void visit_textures(V& v, Scene& scene) {
   v.list("images", scene.images, kMaxImages, [](auto& each, SceneImage& image) {
     each.text("name", image.name, kMaxText);
     each.bytes("bytes", image.bytes, 0, kMaxSentImages);
   });
-  // One a mesh, of no or of all its positions.
-  v.list_as_long("texcoords", m.texcoords, "meshes", scene.meshes.size(),
-                 [&scene, mesh = std::size_t{0}](auto& each, std::vector<glm::vec2>& texcoords) mutable {
-                   each.list("of_mesh", texcoords, kMaxMeshVertices, [](auto& of, glm::vec2& t) {
-                     of.real32("u", t.x, -1e4, 1e4);
-                     of.real32("v", t.y, -1e4, 1e4);
-                   });
-                   const std::size_t positions =
-                       mesh < scene.meshes.size() ? scene.meshes[mesh].positions.size() : texcoords.size();
-                   each.rule("of_mesh", texcoords.empty() || texcoords.size() == positions,
-                             "is not one for each position");
-                   ++mesh;
-                 });
+  v.each_of("texcoords", scene.meshes, "meshes", [](auto& each, TriangleMesh& mesh) {
+    each.list("of_mesh", mesh.texcoords, kMaxMeshVertices, [](auto& of, glm::vec2& t) {
+      of.real32("u", t.x, -1e4, 1e4);
+      of.real32("v", t.y, -1e4, 1e4);
+    });
+    each.rule("of_mesh", mesh.texcoords.empty() || mesh.texcoords.size() == mesh.positions.size(),
+              "is not one for each position");
+  });
+  std::vector<Material> materials;
+  each_material(scene, [&](const Material& material) { materials.push_back(material); });
   const std::size_t images = scene.images.size();
-  v.list_as_long("materials", m.materials, "bodies and pictures", scene.bodies.size() + scene.pictures.size(),
-                 [images](auto& each, Material& material) {
-                   for (float* channel : {&material.emissive.x, &material.emissive.y, &material.emissive.z})
-                     each.real32("emissive", *channel, 0.0, 100.0);
-                   each.real32("alpha_cutoff", material.alpha_cutoff, 0.0, 1.0);
-                   MaterialMaps& maps = material.maps;
-                   visit(each, maps.base_color, images);
-                   visit(each, maps.metallic_roughness, images);
-                   visit(each, maps.normal, images);
-                   visit(each, maps.occlusion, images);
-                   visit(each, maps.emissive, images);
-                   each.real32("normal_scale", maps.normal_scale, -10.0, 10.0);
-                   each.real32("occlusion_strength", maps.occlusion_strength, 0.0, 1.0);
-                 });
+  v.each_of("materials", materials, "bodies and pictures",
+            [images](auto& each, Material& material) { visit_more(each, material, images); });
+  auto read = materials.begin();
+  each_material(scene, [&](Material& material) { material = *read++; });
 }
 
 }  // namespace slosh::wire

@@ -6,28 +6,20 @@
 #include <memory>
 #include <utility>
 
-#include "net/wire/acting_scene.h"
+#include "net/wire/sent_goals.h"
 
 namespace slosh {
 namespace {
 
 using wire::Bytes;
 using wire::ByteView;
+using wire::Fault;
+using wire::PackedScene;
+using enum wire::SceneVersion;
 
-// A package: its version, how the rest is coded, the rest. A scene in which bodies may be cut has the eighth
-// version, else one in which something comes or goes, or a joint lets go or closes, the seventh, else one
-// that does more than flow and be held the sixth, else one with textures or light of its own the fifth, else
-// one whose fluids say how they look the fourth, else one that settles before its run the third, else one
-// with gauges or regions the second; any other the first, which programs from before these can read. A peer
-// needs the first, the fourth or the fifth.
-constexpr std::uint8_t kVersion = 1;
-constexpr std::uint8_t kMeasured = 2;
-constexpr std::uint8_t kSettled = 3;
-constexpr std::uint8_t kLooked = 4;
-constexpr std::uint8_t kTextured = 5;
-constexpr std::uint8_t kActing = 6;
-constexpr std::uint8_t kComing = 7;
-constexpr std::uint8_t kCutVersion = 8;
+// A package: its version, how the rest is coded, the rest. It has the first version that has all of the
+// scene, so that programs from before later ones can read it. A peer needs the first, the fourth or the
+// fifth.
 
 /// Without what packages before the fifth version leave out.
 Material plain(Material material) {
@@ -36,12 +28,6 @@ Material plain(Material material) {
   material.alpha_cutoff = usual.alpha_cutoff;
   material.maps = usual.maps;
   return material;
-}
-
-template <class Visit>
-void each_material(Scene& scene, Visit&& visit) {
-  for (Body& body : scene.bodies) visit(body.material);
-  for (Picture& picture : scene.pictures) visit(picture.material);
 }
 
 template <class Visit>
@@ -68,7 +54,7 @@ void keep_sent_images(Scene& scene) {
   std::vector<int> moved(scene.images.size(), -1);
   std::vector<SceneImage> kept;
   bool any_map = false;
-  each_material(scene, [&](Material& material) {
+  wire::each_material(scene, [&](Material& material) {
     each_map(material.maps, [&](TextureMap& map) {
       const auto from = static_cast<std::size_t>(map.image);
       if (map.image < 0 || from >= travel.size() || !travel[from]) {
@@ -111,39 +97,34 @@ bool comes_or_goes(const Scene& scene) {
          });
 }
 
-std::uint8_t version_of(const Scene& scene) {
-  if (std::ranges::any_of(scene.bodies, [](const Body& b) { return is_cut(b) || b.blade; }))
-    return kCutVersion;
-  if (comes_or_goes(scene)) return kComing;
-  if (!scene.task.empty() || !scene.joints.empty()) return kActing;
+wire::SceneVersion version_of(const Scene& scene) {
+  if (std::ranges::any_of(scene.bodies, [](const Body& b) { return is_cut(b) || b.blade; })) return kCutScene;
+  if (comes_or_goes(scene)) return kComingScene;
+  if (!scene.task.empty() || !scene.joints.empty()) return kActingScene;
   for (const Body& body : scene.bodies)
-    if (body.temperature || !body.keys.empty()) return kActing;
+    if (body.temperature || !body.keys.empty()) return kActingScene;
   for (const Fluid& fluid : scene.fluids)
-    if (fluid.heat != Heat{}) return kActing;
+    if (fluid.heat != Heat{}) return kActingScene;
   for (const Body& body : scene.bodies)
-    if (body.material != plain(body.material)) return kTextured;
+    if (body.material != plain(body.material)) return kTexturedScene;
   for (const Picture& picture : scene.pictures)
-    if (picture.material != plain(picture.material)) return kTextured;
+    if (picture.material != plain(picture.material)) return kTexturedScene;
   for (const Fluid& fluid : scene.fluids)
-    if (fluid != plain(fluid)) return kLooked;
-  if (scene.settle > 0.0) return kSettled;
-  return scene.gauges.empty() && scene.regions.empty() ? kVersion : kMeasured;
+    if (fluid != plain(fluid)) return kLookedScene;
+  if (scene.settle > 0.0) return kSettledScene;
+  return scene.gauges.empty() && scene.regions.empty() ? kPlainScene : kMeasuredScene;
 }
 
-// What a version has, of a scene of the last one.
-template <class F>
-wire::Fault with_version(std::uint8_t version, wire::CutScene& cut, F&& f) {
-  wire::ComingScene& coming = cut.coming;
-  wire::ActingScene& acting = coming.acting;
-  wire::TexturedScene& whole = acting.textured;
-  if (version == kCutVersion) return f(cut);
-  if (version == kComing) return f(coming);
-  if (version == kActing) return f(acting);
-  if (version == kTextured) return f(whole);
-  if (version == kLooked) return f(whole.looked);
-  if (version == kSettled) return f(whole.looked.settled);
-  if (version == kMeasured) return f(whole.looked.settled.measured);
-  return f(whole.looked.settled.measured.packed);
+/// Calls `call` with the scene in that version, and takes back what it becomes.
+template <std::uint8_t Version = kPlainScene, class Call>
+Fault in_version(std::uint8_t version, PackedScene& packed, Call&& call) {
+  if constexpr (Version < kCutScene) {
+    if (version != Version) return in_version<Version + 1>(version, packed, call);
+  }
+  wire::SceneAt<static_cast<wire::SceneVersion>(Version)> at{std::move(packed)};
+  const Fault fault = call(at);
+  packed = std::move(at.packed);
+  return fault;
 }
 
 enum Coding : std::uint8_t { kStored, kZstd };
@@ -222,19 +203,14 @@ std::vector<std::string> images_left_behind(const Scene& scene) {
 }
 
 Result<Bytes> pack_scene(const Scene& scene, double spacing, SceneParts parts) {
-  wire::CutScene cut{{{{{{{{scene, spacing}}}, scene.fluids}, {}, {}}, {}, {}, {}, {}, {}}, {}, {}, {}, {}},
-                     {}};
-  wire::TexturedScene& whole = cut.coming.acting.textured;
-  Scene& sent = whole.looked.settled.measured.packed.scene;
-  if (parts == SceneParts::kSeen) keep_seen(sent);
-  keep_sent_images(sent);
-  for (const TriangleMesh& mesh : sent.meshes) whole.texcoords.push_back(mesh.texcoords);
-  each_material(sent, [&](Material& material) { whole.materials.push_back(material); });
-  const std::uint8_t version = version_of(sent);
-  if (version >= kActing) wire::fill_acting(sent, cut);
+  PackedScene packed{scene, spacing};
+  if (parts == SceneParts::kSeen) keep_seen(packed.scene);
+  keep_sent_images(packed.scene);
+  const wire::SceneVersion version = version_of(packed.scene);
+  wire::send_goals(packed);
   Bytes content;
-  if (const wire::Fault fault =
-          with_version(version, cut, [&](auto& fields) { return wire::encode(fields, content); })) {
+  if (const Fault fault =
+          in_version(version, packed, [&](auto& fields) { return wire::encode(fields, content); })) {
     return Error{"scene '" + scene.name + "'", "cannot be sent or recorded: " + fault.text(),
                  "net/WIRE_FORMAT.md has the limits"};
   }
@@ -262,7 +238,7 @@ Result<Bytes> pack_scene(const Scene& scene, double spacing, SceneParts parts) {
 Result<UnpackedScene> unpack_scene(ByteView package) {
   if (package.size() < kHead) return damaged("it is empty");
   if (package.size() > wire::kMaxSceneBytes + kHead) return damaged("it is too large");
-  if (package[0] < kVersion || package[0] > kCutVersion)
+  if (package[0] < kPlainScene || package[0] > kCutScene)
     return damaged("its version is " + std::to_string(package[0]));
   if (package[1] > kZstd) return damaged("its coding is " + std::to_string(package[1]));
   ByteView content = package.subspan(kHead);
@@ -273,37 +249,13 @@ Result<UnpackedScene> unpack_scene(ByteView package) {
     unpacked = std::move(result.value());
     content = unpacked;
   }
-  wire::CutScene cut;
-  wire::TexturedScene& whole = cut.coming.acting.textured;
-  if (const wire::Fault fault =
-          with_version(package[0], cut, [&](auto& fields) { return wire::decode(content, fields); })) {
+  PackedScene packed;
+  if (const Fault fault =
+          in_version(package[0], packed, [&](auto& fields) { return wire::decode(content, fields); }))
     return damaged(fault.text());
-  }
-  wire::PackedScene& packed = whole.looked.settled.measured.packed;
-  for (std::size_t i = 0; i < packed.scene.fluids.size(); ++i) {
-    Fluid& fluid = packed.scene.fluids[i];
-    const Fluid look = package[0] >= kLooked ? whole.looked.looks[i] : plain(fluid);
-    fluid.gloss = look.gloss;
-    fluid.refraction = look.refraction;
-    fluid.scattering = look.scattering;
-    fluid.roughness = look.roughness;
-  }
-  if (package[0] >= kTextured) {
-    for (std::size_t i = 0; i < packed.scene.meshes.size(); ++i)
-      packed.scene.meshes[i].texcoords = std::move(whole.texcoords[i]);
-    auto read = whole.materials.begin();
-    each_material(packed.scene, [&](Material& material) {
-      material.emissive = read->emissive;
-      material.alpha_cutoff = read->alpha_cutoff;
-      material.maps = read->maps;
-      ++read;
-    });
-  }
-  if (package[0] >= kActing) {
-    const std::string odd =
-        wire::take_acting(cut, package[0] >= kComing, package[0] >= kCutVersion, packed.scene);
-    if (!odd.empty()) return damaged(odd);
-  }
+  if (package[0] < kLookedScene)
+    for (Fluid& fluid : packed.scene.fluids) fluid = plain(fluid);
+  if (!wire::take_goals(packed)) return damaged("goals of its task do not fit its steps");
   return UnpackedScene{std::move(packed.scene), packed.spacing};
 }
 

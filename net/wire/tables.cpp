@@ -54,7 +54,7 @@ std::vector<Table> tables() {
           message<Bodies>("Bodies"),
           message<Hands>("Hands"),
           message<FluidWrench>("FluidWrench"),
-          part<CutScene>("Scene")};
+          part<SceneAt<kCutScene>>("Scene")};
 }
 
 constexpr const char kBegin[] = "<!-- table: ";

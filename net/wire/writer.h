@@ -143,6 +143,10 @@ class Writer {
     }
     elements(name, values, count, each);
   }
+  template <class T, class Each>
+  void each_of(std::string_view name, std::vector<T>& values, std::string_view, Each&& each) {
+    elements(name, values, values.size(), each);
+  }
 
  private:
   template <class T, class Each>

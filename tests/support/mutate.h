@@ -164,6 +164,10 @@ class Mutator {
                     Each&& each) {
     elements(name, values, each);
   }
+  template <class T, class Each>
+  void each_of(std::string_view name, std::vector<T>& values, std::string_view, Each&& each) {
+    elements(name, values, each);
+  }
 
  private:
   /// Whether the damage that is wanted is this one.

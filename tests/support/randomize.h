@@ -122,6 +122,10 @@ class Randomizer {
     values.assign(count, T{});
     for (T& value : values) each(*this, value);
   }
+  template <class T, class Each>
+  void each_of(std::string_view, std::vector<T>& values, std::string_view, Each&& each) {
+    for (T& value : values) each(*this, value);
+  }
 
  private:
   double real(double least, double most) {

@@ -35,7 +35,7 @@ TEST(ScenePackage, ShippedScenesComeBackToTheBit) {
     const Bytes seen = packed(scene.value(), SceneParts::kSeen);
     EXPECT_LE(seen.size(), all.size());
     Bytes plain;
-    EXPECT_FALSE(wire::encode(wire::PackedScene{scene.value(), 0.01}, plain));
+    EXPECT_FALSE(wire::encode(wire::SceneAt<wire::kPlainScene>{{scene.value(), 0.01}}, plain));
     std::printf("%-8s %7zu bytes plain, %7zu packed, %7zu what is seen\n", entry.name.c_str(), plain.size(),
                 all.size(), seen.size());
     EXPECT_LT(plain.size(), 32 * all.size()) << "stored for want of belief";
@@ -57,20 +57,20 @@ TEST(ScenePackage, KeepsWhatAPeerSeesAndHolds) {
 }
 
 TEST(ScenePackage, FieldsRoundTripAndEveryCutAndDamageIsRefused) {
-  const wire::PackedScene scene{test::small_scene(), 0.0123456789};
+  const wire::SceneAt<wire::kPlainScene> scene{{test::small_scene(), 0.0123456789}};
   test::expect_round_trip(scene);
   test::expect_cuts_refused(scene);
   EXPECT_GT(test::expect_damages_refused(scene), 1000u);
 }
 
 TEST(ScenePackage, TellsWhatTookTheGoneModelsPlace) {
-  const wire::PackedScene scene{test::small_scene(), 0.01};
+  const wire::SceneAt<wire::kPlainScene> scene{{test::small_scene(), 0.01}};
   wire::Damaged damaged;
   for (std::size_t which = 0; damaged.damage != "a choice that is gone"; ++which) {
     damaged = wire::damaged_message(scene, which);
     ASSERT_FALSE(damaged.field.empty());
   }
-  wire::PackedScene back;
+  wire::SceneAt<wire::kPlainScene> back;
   EXPECT_EQ(wire::decode(damaged.bytes, back).text(),
             "model: 0 is the model `consistent`, which is no more: `corrected` took its place; there are "
             "paper, corrected, incompressible");
@@ -89,8 +89,8 @@ TEST(ScenePackage, InstrumentsTravelOnlyWhereTheyAreNeeded) {
   test::expect_same_scene(back.value().scene, scene);
   const Bytes seen = packed(scene, SceneParts::kSeen);
   EXPECT_EQ(seen[0], 1) << "a peer measures nothing";
-  test::expect_round_trip(wire::MeasuredScene{{scene, 0.01}});
-  test::expect_cuts_refused(wire::MeasuredScene{{scene, 0.01}});
+  test::expect_round_trip(wire::SceneAt<wire::kMeasuredScene>{{scene, 0.01}});
+  test::expect_cuts_refused(wire::SceneAt<wire::kMeasuredScene>{{scene, 0.01}});
   scene.regions[0].mesh = 99;
   EXPECT_NE(pack_scene(scene, 0.01, SceneParts::kAll).error().text().find("regions.mesh"), std::string::npos);
 }
@@ -106,8 +106,8 @@ TEST(ScenePackage, SettlingTravelsOnlyWhereItIsAskedFor) {
   EXPECT_EQ(packed(scene, SceneParts::kSeen)[0], 1) << "a peer settles nothing";
   scene.gauges.push_back({"level", 0, {0.1, 0.2, 0.3}});
   test::expect_same_scene(unpack_scene(packed(scene)).value().scene, scene);
-  test::expect_round_trip(wire::SettledScene{{{scene, 0.01}}});
-  test::expect_cuts_refused(wire::SettledScene{{{scene, 0.01}}});
+  test::expect_round_trip(wire::SceneAt<wire::kSettledScene>{{scene, 0.01}});
+  test::expect_cuts_refused(wire::SceneAt<wire::kSettledScene>{{scene, 0.01}});
   scene.settle = 61.0;
   EXPECT_NE(pack_scene(scene, 0.01, SceneParts::kAll).error().text().find("settle"), std::string::npos);
 }
@@ -132,7 +132,7 @@ TEST(ScenePackage, LooksTravelOnlyWhereTheyAreGiven) {
       EXPECT_EQ(back.value().scene.fluids, looked.fluids);
     }
   }
-  const wire::LookedScene whole{{{{scene, 0.01}}}, scene.fluids};
+  const wire::SceneAt<wire::kLookedScene> whole{{scene, 0.01}};
   test::expect_round_trip(whole);
   test::expect_cuts_refused(whole);
   scene.fluids[0].refraction = 0.9f;
@@ -159,14 +159,6 @@ Scene textured_scene() {
   return scene;
 }
 
-wire::TexturedScene packed_fields(const Scene& scene) {
-  wire::TexturedScene whole{{{{{scene, 0.01}}}, scene.fluids}, {}, {}};
-  for (const TriangleMesh& mesh : scene.meshes) whole.texcoords.push_back(mesh.texcoords);
-  for (const Body& body : scene.bodies) whole.materials.push_back(body.material);
-  for (const Picture& picture : scene.pictures) whole.materials.push_back(picture.material);
-  return whole;
-}
-
 TEST(ScenePackage, TexturesTravelWithTheSceneThatHasThem) {
   const Scene scene = textured_scene();
   const Bytes all = packed(scene);
@@ -189,15 +181,15 @@ TEST(ScenePackage, TexturesTravelWithTheSceneThatHasThem) {
 }
 
 TEST(ScenePackage, TexturesFieldsAreCheckedLikeAllOthers) {
-  const wire::TexturedScene whole = packed_fields(textured_scene());
+  const wire::SceneAt<wire::kTexturedScene> whole{{textured_scene(), 0.01}};
   test::expect_round_trip(whole);
   test::expect_cuts_refused(whole);
   EXPECT_GT(test::expect_damages_refused(whole), 1000u);
-  wire::TexturedScene short_one = whole;
-  short_one.texcoords[0].pop_back();
+  wire::SceneAt<wire::kTexturedScene> short_one = whole;
+  short_one.packed.scene.meshes[0].texcoords.pop_back();
   Bytes bytes;
   wire::encode(short_one, bytes);
-  wire::TexturedScene read;
+  wire::SceneAt<wire::kTexturedScene> read;
   EXPECT_NE(wire::decode(bytes, read).text().find("texcoords"), std::string::npos);
 }
 
@@ -257,9 +249,9 @@ TEST(ScenePackage, RulesBetweenFieldsHold) {
       {"domain_min", [](Scene& s) { s.domain_min.y = s.domain_max.y; }},
   };
   for (const auto& each : cases) {
-    wire::PackedScene scene{test::small_scene(), 0.01};
-    each.damage(scene.scene);
-    EXPECT_NE(pack_scene(scene.scene, 0.01, SceneParts::kAll).error().text().find(each.field),
+    wire::SceneAt<wire::kPlainScene> scene{{test::small_scene(), 0.01}};
+    each.damage(scene.packed.scene);
+    EXPECT_NE(pack_scene(scene.packed.scene, 0.01, SceneParts::kAll).error().text().find(each.field),
               std::string::npos)
         << each.field;
     Bytes content;
