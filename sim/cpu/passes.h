@@ -48,7 +48,12 @@ class BodySurface {
   const BoundaryParticles& sorted() const { return sorted_; }
 
  private:
+  // Of one body among local_.
+  struct Run {
+    std::size_t body = 0, first = 0, end = 0;
+  };
   std::vector<SurfaceParticle> local_;
+  std::vector<Run> runs_;
   std::vector<std::uint32_t> keys_;
   std::vector<std::uint32_t> from_;  // which of local_ each placed one is
   std::vector<glm::vec3> placed_, velocity_;

@@ -231,6 +231,7 @@ struct DeviceClamp {
   ClampBody body;
   BoundingSphere sphere;
   glm::dvec3 center{0.0};  ///< of mass as the sub-step ends, m, world
+  std::uint32_t number{};  ///< index into Scene::bodies
 };
 
 /// A probe's state for a step.
@@ -324,7 +325,8 @@ struct ProbeOutput {
 };
 /// The bodies of the penetration clamp in a sub-step, and what it takes from particles.
 struct ClampView {
-  std::uint32_t count = 0;  ///< of bodies; 0: no clamp
+  std::uint32_t count = 0;  ///< of bodies that there are; 0: no clamp
+  std::uint32_t all = 0;    ///< of the scene's bodies, each of which has its place in `impulses`
   std::uint32_t any_fast = 0;
   const DeviceClamp* bodies = nullptr;
   unsigned long long* impulses = nullptr;  ///< as ImpulseSums; added to

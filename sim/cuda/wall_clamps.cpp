@@ -47,17 +47,24 @@ void WallClamps::send(const Plan& plan, std::span<const RigidBody> before, std::
   if (goes_as_sent(before, after)) return;
   place_clamp_bodies(solids_, plan, before, after, clamped_);
   any_fast_ = false;
-  for (std::size_t b = 0; b < solids_.size(); ++b) {
-    sent_[b] = {clamped_.bodies[b], clamped_.spheres[b], after[b].position};
-    any_fast_ |= clamped_.bodies[b].fast;
+  for (std::size_t i = 0; i < clamped_.bodies.size(); ++i) {
+    const std::uint32_t number = clamped_.numbers[i];
+    sent_[i] = {clamped_.bodies[i], clamped_.spheres[i], after[number].position, number};
+    any_fast_ |= clamped_.bodies[i].fast;
   }
-  check.ok(cudaMemcpyAsync(clamps_.data(), sent_.data(), clamps_.bytes(), cudaMemcpyHostToDevice, stream),
+  if (clamped_.bodies.empty()) return;
+  check.ok(cudaMemcpyAsync(clamps_.data(), sent_.data(), clamped_.bodies.size() * sizeof(DeviceClamp),
+                           cudaMemcpyHostToDevice, stream),
            "sending walls");
 }
 
 ClampView WallClamps::view(const ImpulseUnits& units) const {
-  return {static_cast<std::uint32_t>(clamps_.size()), any_fast_ ? 1u : 0u, clamps_.data(),
-          reinterpret_cast<unsigned long long*>(impulses_.data()), units};
+  return {static_cast<std::uint32_t>(clamped_.bodies.size()),
+          static_cast<std::uint32_t>(clamps_.size()),
+          any_fast_ ? 1u : 0u,
+          clamps_.data(),
+          reinterpret_cast<unsigned long long*>(impulses_.data()),
+          units};
 }
 
 void WallClamps::hand_over(unsigned char* out, CallCheck& check, cudaStream_t stream) const {

@@ -1,6 +1,7 @@
 // The bodies of the penetration clamp, sub-step by sub-step.
 #pragma once
 
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -25,17 +26,20 @@ std::vector<DistanceField> clamp_fields(const Scene& scene, const SampledScene& 
 /// A body's solid as long as a world runs.
 struct ClampSolid {
   DistanceFieldView field;  ///< in the memory of whoever reads it; empty: nobody is clamped
-  float radius = 0.0f;      ///< m, of a ball around the middle of the field's box that holds all of the solid
+  glm::vec3 middle{0.0f};   ///< m, mesh frame, of a ball that holds all of the solid
+  float radius = 0.0f;      ///< m
 };
 /// `field` is here, `view` the same where it will be read.
 ClampSolid clamp_solid(const DistanceField& field, const DistanceFieldView& view);
 
-/// The bodies of a sub-step, one entry a body in both.
+/// The bodies of a sub-step that particles may meet: those that have a solid and are not away. Every particle
+/// near a wall looks at each.
 struct ClampBodies {
   std::vector<ClampBody> bodies;
-  std::vector<BoundingSphere> spheres;
+  std::vector<BoundingSphere> spheres;  ///< one a body of these
+  std::vector<std::uint32_t> numbers;   ///< likewise, rising: index into Scene::bodies
 };
-/// On their way from `before` to `after` (one a body each).
+/// On their way from `before` to `after` (one a body of the scene each).
 void place_clamp_bodies(std::span<const ClampSolid> solids, const Plan& plan,
                         std::span<const RigidBody> before, std::span<const RigidBody> after,
                         ClampBodies& out);

@@ -288,6 +288,47 @@ TEST(PenetrationClamp, bounding_spheres_rule_out_nobody_who_is_bent) {
   EXPECT_GT(ruled_out, 2000);
 }
 
+// Bodies that are away cannot be met, and every particle near a wall would look at each.
+TEST(PenetrationClamp, looks_at_bodies_that_are_there) {
+  const glm::vec3 half(2.0f * kSpacing, kSpacing, kSpacing);
+  const Solid box(-half, half, [&](const glm::vec3& p) {
+    const glm::vec3 off = glm::abs(p) - half;
+    return glm::length(glm::max(off, 0.0f)) + std::min(std::max({off.x, off.y, off.z}), 0.0f);
+  });
+  const DistanceFieldView& view = box.body.field;
+  const ClampSolid solid = clamp_solid({view.origin, view.cell, view.size, box.values}, view);
+  const std::vector<ClampSolid> solids{solid, {}, solid, solid, solid};
+  std::vector<RigidBody> before(5);
+  put_away(before[2]);
+  put_away(before[3]);
+  std::vector<RigidBody> after = before;
+  after[3] = RigidBody{};
+  Plan plan;
+  plan.spacing = kSpacing;
+  plan.support_radius = 2.0 * kSpacing;
+  ClampBodies placed;
+  for (int again = 0; again < 2; ++again) place_clamp_bodies(solids, plan, before, after, placed);
+  EXPECT_EQ(placed.numbers, (std::vector<std::uint32_t>{0, 3, 4})) << "one without a solid, one that is away";
+  EXPECT_EQ(placed.bodies.size(), 3u);
+  EXPECT_EQ(placed.spheres.size(), 3u);
+}
+
+// A part of a body has the whole's grid, and a ball of its own.
+TEST(PenetrationClamp, bounding_spheres_are_around_the_solid_alone) {
+  const glm::vec3 half(4.0f * kSpacing, kSpacing, kSpacing);
+  const auto clamped = [&](float least) {
+    const Solid part(-half, half, [&](const glm::vec3& p) {
+      const glm::vec3 off = glm::abs(p) - half;
+      return std::max(std::max({off.x, off.y, off.z}), least - p.x);
+    });
+    const DistanceFieldView& view = part.body.field;
+    return clamp_solid({view.origin, view.cell, view.size, part.values}, view);
+  };
+  const ClampSolid whole = clamped(-half.x), quarter = clamped(0.5f * half.x);
+  EXPECT_NEAR(quarter.middle.x, 0.75f * half.x, kSpacing);
+  EXPECT_LT(quarter.radius, 0.6f * whole.radius);
+}
+
 // What a particle loses, in momentum and in angular momentum about any point, is what is written down, in
 // whatever order it is added.
 TEST(ClampImpulse, is_what_the_particle_lost) {

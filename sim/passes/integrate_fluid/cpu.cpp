@@ -22,17 +22,18 @@ bool keep_from_walls(const WallClamps& clamps, const ImpulseUnits& units, float 
     std::atomic_ref(clamps.impulses[word]).fetch_add(value, std::memory_order_relaxed);
   };
   bool past = false;
-  const bool bent =
-      clamp_against_all([&](std::uint32_t b) { return clamps.solids.spheres[b]; },
-                        [&](std::uint32_t b) -> const ClampBody& { return clamps.solids.bodies[b]; },
-                        static_cast<std::uint32_t>(clamps.solids.bodies.size()), near, from, x, v,
-                        [&](std::uint32_t b, const glm::vec3& to, const glm::vec3& before) {
-                          past |= glm::distance(to, x) > clamps.solids.bodies[b].depth;
-                          impulse_on_body({mass, to, x, before, v}, clamps.centers[b], units,
-                                          [&](int word, std::int64_t value) {
-                                            add(kImpulseWords * b + static_cast<std::size_t>(word), value);
-                                          });
+  const bool bent = clamp_against_all(
+      [&](std::uint32_t b) { return clamps.solids.spheres[b]; },
+      [&](std::uint32_t b) -> const ClampBody& { return clamps.solids.bodies[b]; },
+      static_cast<std::uint32_t>(clamps.solids.bodies.size()), near, from, x, v,
+      [&](std::uint32_t b, const glm::vec3& to, const glm::vec3& before) {
+        past |= glm::distance(to, x) > clamps.solids.bodies[b].depth;
+        const std::size_t number = clamps.solids.numbers[b];
+        impulse_on_body({mass, to, x, before, v}, clamps.centers[number], units,
+                        [&](int word, std::int64_t value) {
+                          add(kImpulseWords * number + static_cast<std::size_t>(word), value);
                         });
+      });
   if (bent) add(clamps.impulses.size() - 1, 1);
   return past;
 }

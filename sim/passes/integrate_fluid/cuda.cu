@@ -14,17 +14,17 @@ __device__ bool keep_from_walls(const ClampView& clamps, float mass, bool near, 
   const auto sphere = [&](std::uint32_t b) -> const BoundingSphere& { return clamps.bodies[b].sphere; };
   const auto body = [&](std::uint32_t b) -> const ClampBody& { return clamps.bodies[b].body; };
   bool past = false;
-  const bool bent =
-      clamp_against_all(sphere, body, clamps.count, near, from, x, v,
-                        [&](std::uint32_t b, const glm::vec3& to, const glm::vec3& before) {
-                          past |= glm::distance(to, x) > body(b).depth;
-                          impulse_on_body({mass, to, x, before, v}, clamps.bodies[b].center, clamps.units,
-                                          [&](int word, std::int64_t value) {
-                                            atomicAdd(clamps.impulses + kImpulseWords * b + word,
-                                                      static_cast<unsigned long long>(value));
-                                          });
-                        });
-  if (bent) atomicAdd(clamps.impulses + kImpulseWords * clamps.count, 1ull);
+  const bool bent = clamp_against_all(sphere, body, clamps.count, near, from, x, v,
+                                      [&](std::uint32_t b, const glm::vec3& to, const glm::vec3& before) {
+                                        past |= glm::distance(to, x) > body(b).depth;
+                                        const std::size_t first = kImpulseWords * clamps.bodies[b].number;
+                                        impulse_on_body({mass, to, x, before, v}, clamps.bodies[b].center,
+                                                        clamps.units, [&](int word, std::int64_t value) {
+                                                          atomicAdd(clamps.impulses + first + word,
+                                                                    static_cast<unsigned long long>(value));
+                                                        });
+                                      });
+  if (bent) atomicAdd(clamps.impulses + kImpulseWords * clamps.all, 1ull);
   return past;
 }
 

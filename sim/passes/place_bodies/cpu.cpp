@@ -18,6 +18,10 @@ BodySurface::BodySurface(std::vector<SurfaceParticle> particles) : local_(std::m
   placed_.resize(local_.size());
   velocity_.resize(local_.size());
   sorted_.resize(local_.size());
+  for (std::size_t i = 0; i < local_.size(); ++i) {
+    if (runs_.empty() || runs_.back().body != local_[i].body) runs_.push_back({local_[i].body, i, i});
+    runs_.back().end = i + 1;
+  }
   const bool mirrors = std::any_of(local_.begin(), local_.end(), [](const SurfaceParticle& p) {
     return p.mirror.normal != glm::vec3(0.0f);
   });
@@ -29,24 +33,21 @@ void BodySurface::replace(std::size_t first, std::span<const SurfaceParticle> pa
 }
 
 void BodySurface::place(const PassContext& context, std::span<const RigidBody> bodies) {
-  int current = -1;
-  bool away = false;
-  SurfaceMotion motion;
   std::size_t count = 0;  // of those that are not away: no others are sorted
-  for (std::size_t i = 0; i < local_.size(); ++i) {
-    if (local_[i].body != current) {
-      current = local_[i].body;
-      motion = surface_motion(bodies[current]);
-      away = bodies[current].gone && is_away(bodies[current].mesh_pose());
+  for (const Run& run : runs_) {
+    const RigidBody& body = bodies[run.body];
+    if (body.gone && is_away(body.mesh_pose())) continue;
+    const SurfaceMotion motion = surface_motion(body);
+    for (std::size_t i = run.first; i < run.end; ++i) {
+      if (is_nobody(local_[i])) continue;
+      const glm::vec3 p = motion.place(local_[i].position);
+      from_[count] = static_cast<std::uint32_t>(i);
+      placed_[count] = p;
+      velocity_[count] = motion.velocity_at(p);
+      // Outside the domain there is no fluid to meet.
+      keys_[count++] = context.grid.contains(p.x, p.y, p.z) ? context.grid.cell_of(p.x, p.y, p.z)
+                                                            : context.grid.retired_key();
     }
-    if (away || is_nobody(local_[i])) continue;
-    const glm::vec3 p = motion.place(local_[i].position);
-    from_[count] = static_cast<std::uint32_t>(i);
-    placed_[count] = p;
-    velocity_[count] = motion.velocity_at(p);
-    // Outside the domain there is no fluid to meet.
-    keys_[count++] = context.grid.contains(p.x, p.y, p.z) ? context.grid.cell_of(p.x, p.y, p.z)
-                                                          : context.grid.retired_key();
   }
   sorter_.sort(keys_.data(), count, context.grid.retired_key());
   const std::uint32_t* order = sorter_.order();
