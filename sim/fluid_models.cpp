@@ -10,11 +10,7 @@ FluidModels::FluidModels(const Scene& scene) {
     Watched& watched = bodies_.emplace_back();
     watched.free = body.motion == BodyMotion::kFree;
     if (!watched.free) continue;
-    const glm::dmat3& inertia = body.mass.inertia;
-    watched.bounds.body_mass = body.mass.mass;
-    if (!body.point_probe)
-      watched.bounds.gyration_squared =
-          (inertia[0][0] + inertia[1][1] + inertia[2][2]) / (2.0 * std::max(body.mass.mass, 1e-9));
+    watched.point = body.point_probe;
     watched.bounds.up = gravity > 0.0 ? -scene.gravity / gravity : glm::dvec3(0.0);
   }
   for (const Fluid& fluid : scene.fluids) density_ = std::max(density_, fluid.rest_density);
@@ -36,11 +32,18 @@ void FluidModels::after_step(const World& world, const BodySnapshot& now, std::s
       body.watched = false;
       continue;
     }
-    // A viscosity that is set while it runs switches viscous forces on or off.
-    if (!body.watched || body.with_drag != !drags.empty()) {
+    const MassProperties mass = world.mass(b);
+    // A viscosity that is set while it runs switches viscous forces on or off; a cut makes another body of
+    // it.
+    if (!body.watched || body.with_drag != !drags.empty() || body.bounds.body_mass != mass.mass) {
       const double spacing = world.plan().spacing;
       body.watched = true;
       body.with_drag = !drags.empty();
+      const glm::dmat3& inertia = mass.inertia;
+      body.bounds.body_mass = mass.mass;
+      if (!body.point)
+        body.bounds.gyration_squared =
+            (inertia[0][0] + inertia[1][1] + inertia[2][2]) / (2.0 * std::max(mass.mass, 1e-9));
       body.bounds.fluid_mass =
           density_ * static_cast<double>(world.fluid_count()) * spacing * spacing * spacing;
       body.bounds.reach = world.plan().support_radius;

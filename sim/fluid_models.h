@@ -29,8 +29,8 @@ class FluidModels {
 
  private:
   struct Watched {
-    bool free = false;
-    WrenchBounds bounds;  // fluid_mass and reach are set when the watching begins
+    bool free = false, point = false;
+    WrenchBounds bounds;  // all but `up` are set when the watching begins
     bool watched = false;
     bool with_drag = false;  // readings have one
     WrenchIdentifier identifier;

@@ -93,6 +93,12 @@ std::uint64_t World::tick() const {
 std::size_t World::fluid_count() const {
   return impl_->fluid_count;
 }
+MassProperties World::mass(std::size_t body) const {
+  const std::vector<RigidBody>& bodies = impl_->bodies.bodies();
+  if (body >= bodies.size() || !bodies[body].free) return {0.0, glm::dvec3(0.0), glm::dmat3(0.0)};
+  const RigidBody& is = bodies[body];
+  return {is.mass, is.local_center, is.inertia};
+}
 std::size_t World::boundary_count() const {
   return impl_->boundary_count;
 }

@@ -115,6 +115,8 @@ class World {
   std::size_t fluid_count() const;     ///< all that there is room for, in the world or out of it
   std::size_t boundary_count() const;  ///< body particles
   const StepTimes& times() const;      ///< of the last step
+  /// Of a free body as it is now, cut or whole, in its mesh frame; 0 kg of any other.
+  MassProperties mass(std::size_t body) const;
 
   /// Fills without allocating once the vectors have grown.
   void fill(BodySnapshot& out) const;

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <random>
 
+#include "sim/fluid_models.h"
 #include "tests/support/contains.h"
 #include "tests/support/kitchen.h"
 #include "tests/support/stirred_tank.h"
@@ -232,17 +233,18 @@ TEST(Cutting, WhatComesAgainIsWhole) {
   EXPECT_TRUE(world.cut(0, {{0, 0, 1}, 0.0}));
 }
 
-// In water, of which the tank is full to 10 cm.
-TEST(Cutting, WhatFloatsFloatsOnInTwo) {
-  constexpr double kTankSpacing = 0.01, kG = 9.81;
+// A block of 12 x 6 x 8 cm (body 1) in a tank that is full of water to 10 cm, and what it may become. Half of
+// it is in the water.
+testing::Tank with_block_afloat(int pieces, double viscosity = 0.05) {
+  constexpr double kTankSpacing = 0.01;
   const glm::dvec3 half(0.06, 0.03, 0.04), middle(0.0, 0.09, 0.0);
   Kitchen kitchen;
-  kitchen.add_butter(testing::box_mesh(-half, half), 2, 0.0, {middle, {1, 0, 0, 0}});
+  kitchen.add_butter(testing::box_mesh(-half, half), pieces, 0.0, {middle, {1, 0, 0, 0}});
   const Result<SampledScene> block = sample_scene(kitchen.scene, kTankSpacing);
-  ASSERT_TRUE(block);
-  testing::Tank tank = testing::make_tank({.inner = {0.2, 0.2, 0.2}, .fill = 0.1});
+  EXPECT_TRUE(block);
+  testing::Tank tank = testing::make_tank({.inner = {0.2, 0.2, 0.2}, .fill = 0.1, .viscosity = viscosity});
   testing::clear_box(tank.sampled, glm::vec3(middle), glm::vec3(half + 0.5 * kTankSpacing));
-  for (std::size_t b = 0; b < 2; ++b) {
+  for (std::size_t b = 0; b < kitchen.scene.bodies.size(); ++b) {
     Body body = kitchen.scene.bodies[b];
     body.mesh = static_cast<int>(tank.scene.meshes.size());
     if (body.piece_of >= 0) body.piece_of = 1;
@@ -251,6 +253,12 @@ TEST(Cutting, WhatFloatsFloatsOnInTwo) {
     tank.sampled.distance_fields.push_back(block.value().distance_fields[b]);
   }
   tank.scene.meshes.push_back(kitchen.scene.meshes.front());
+  return tank;
+}
+
+TEST(Cutting, WhatFloatsFloatsOnInTwo) {
+  constexpr double kG = 9.81;
+  const testing::Tank tank = with_block_afloat(2);
   World world = testing::world_of(tank);
   const double weight = kG * tank.scene.bodies[1].mass.mass;
   const auto lift_over = [&](double seconds) {
@@ -269,6 +277,49 @@ TEST(Cutting, WhatFloatsFloatsOnInTwo) {
   for (const std::size_t b : {1u, 2u}) EXPECT_GT(state_in(world).bodies[b].fluid.force.y, 0.2 * weight);
   EXPECT_EQ(world.take_status() & (kStatusNonFinite | kStatusBodyGone), 0u);
   EXPECT_EQ(world.diagnostics().retired, 0u);
+}
+
+// What a hand is told of the fluid is of the part that it holds. Without viscosity all that is found is for a
+// turn what it is on a way of the body's own radius of gyration.
+TEST(Cutting, TheModelOfAHeldPartsFluidIsOfThatPart) {
+  testing::Tank tank = with_block_afloat(2, 0.0);
+  testing::add_grip(tank, 1);
+  World world = testing::world_of(tank);
+  const std::vector<char> wanted{0, 1, 0};
+  FluidModels models(tank.scene), anew(tank.scene);
+  std::vector<FluidWrenchModel> model, fresh;
+  HandleInput hand;
+  hand.engaged = true;
+  hand.pose = tank.scene.bodies[1].pose;
+  const double height = hand.pose.position.y;
+  const auto step = [&] {
+    hand.pose.position.y = height - 0.02 + 0.002 * std::sin(100.0 * world.time());
+    world.step(std::span(&hand, 1));
+    models.after_step(world, state_in(world), wanted, model);
+  };
+  double square = 0.0;  // m², of that radius
+  const auto look = [&] {
+    const FluidWrenchModel& now = model.front();
+    const double way = now.added_mass[0][0] - now.d_velocity[0][0];
+    if (!(way > 0.0)) return;
+    square = (now.added_mass[3][3] - now.d_velocity[3][3]) / way;
+    const MassProperties mass = world.mass(1);
+    const double own = (mass.inertia[0][0] + mass.inertia[1][1] + mass.inertia[2][2]) / (2.0 * mass.mass);
+    EXPECT_NEAR(square, own, 1e-9 * own);
+  };
+  for (int i = 0; i < 100; ++i) step(), look();
+  const double whole = square, mass = world.mass(1).mass;
+  EXPECT_EQ(mass, tank.scene.bodies[1].mass.mass);
+  ASSERT_TRUE(world.cut(1, {{1.0, 0.0, 0.0}, 0.02}));
+  EXPECT_NEAR(world.mass(1).mass, 8.0 / 12.0 * mass, 1e-6 * mass) << "the grip is in the larger part";
+  for (int i = 0; i < 100; ++i) {
+    step(), look();
+    anew.after_step(world, state_in(world), wanted, fresh);
+    EXPECT_EQ(model.front().wrench.force, fresh.front().wrench.force);
+    EXPECT_EQ(model.front().d_velocity, fresh.front().d_velocity);
+    EXPECT_EQ(model.front().added_mass, fresh.front().added_mass);
+  }
+  EXPECT_LT(square, 0.9 * whole);
 }
 
 }  // namespace
