@@ -45,8 +45,8 @@ Verdict verdict_of(const Stress& found, std::uint32_t status, std::string& why) 
 const std::vector<StressCase>& stress_cases() {
   static const std::vector<StressCase> all = [] {
     std::vector<StressCase> cases;
-    for (auto& some :
-         {fluid_stress(), body_stress(), joint_stress(), setting_stress(), hand_stress(), long_stress()})
+    for (auto& some : {fluid_stress(), body_stress(), joint_stress(), cut_stress(), setting_stress(),
+                       hand_stress(), long_stress()})
       cases.insert(cases.end(), some.begin(), some.end());
     return cases;
   }();

@@ -71,6 +71,7 @@ inline constexpr double kMaxMomentumError = 1e-5;  ///< of Stress::momentum_erro
 std::vector<StressCase> fluid_stress();    ///< materials, gravity, sizes, starts
 std::vector<StressCase> body_stress();     ///< bodies of all weights, contacts
 std::vector<StressCase> joint_stress();    ///< linkages
+std::vector<StressCase> cut_stress();      ///< bodies that are cut
 std::vector<StressCase> setting_stress();  ///< heat and what sets
 std::vector<StressCase> hand_stress();     ///< stiff, fast and many hands; closed vessels
 std::vector<StressCase> long_stress();     ///< soaks: a full report's only
