@@ -51,6 +51,13 @@ std::pair<int, int> in_order(int a, int b) {
   return {std::min(a, b), std::max(a, b)};
 }
 
+// Of a sub-step in which an edge at `now` goes by `way` (m): how much of it what is still to be cut resists.
+// A fast one enters or leaves within it.
+double share_inside(double now, double way, const Extent& uncut) {
+  if (!(way > 0.0)) return 1.0;
+  return std::clamp((std::min(now + way, uncut.most) - std::max(now, uncut.least)) / way, 0.0, 1.0);
+}
+
 bool same_pair(const Incision& incision, int blade, int body) {
   return incision.blade == blade && incision.body == body;
 }
@@ -232,14 +239,16 @@ void Blades::find(const std::vector<RigidBody>& bodies, const std::vector<BodySo
       if (!seen) continue;
       const RigidBody& on = bodies[static_cast<std::size_t>(body)];
       const glm::dvec3 middle = transform_point(on.mesh_pose(), 0.5 * (seen->start + seen->end));
-      const double speed = glm::length(velocity_of(bodies[static_cast<std::size_t>(blade.body)],
-                                                   solves[static_cast<std::size_t>(blade.body)], middle) -
-                                       velocity_of(on, solves[static_cast<std::size_t>(body)], middle));
-      if (seen->now < seen->section.least - kEntersFrom * spacing_ - dt * speed) continue;
+      const glm::dvec3 speed = velocity_of(bodies[static_cast<std::size_t>(blade.body)],
+                                           solves[static_cast<std::size_t>(blade.body)], middle) -
+                               velocity_of(on, solves[static_cast<std::size_t>(body)], middle);
+      if (seen->now < seen->section.least - kEntersFrom * spacing_ - dt * glm::length(speed)) continue;
       if (seen->now > seen->section.most + blade.height) continue;
       incision->front = std::max({incision->front, seen->now, seen->section.least});
       pairs_.insert(in_order(blade.body, body));
-      resist(blade, *incision, *seen, bodies, cuts.resistance(body), dt, contacts);
+      const double share = share_inside(seen->now, dt * glm::dot(speed, on.orientation * incision->way),
+                                        {incision->front, seen->section.most});
+      resist(blade, *incision, *seen, bodies, share * cuts.resistance(body), dt, contacts);
       incisions_.push_back(*incision);
     }
   }
