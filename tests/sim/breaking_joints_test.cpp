@@ -55,7 +55,8 @@ TEST(FixedJoint, CarriesAWeightByItsForceAndItsTorque) {
   run_for(world, 0.5);
   const BodySnapshot state = state_of(world);
   EXPECT_NEAR(glm::distance(state.joints[0].reaction.force, glm::dvec3(0, 2.0 * kGravity, 0)), 0.0, 1e-9);
-  EXPECT_NEAR(glm::distance(state.joints[0].reaction.torque, glm::dvec3(0, 0, 0.2 * 2.0 * kGravity)), 0.0, 1e-9);
+  EXPECT_NEAR(glm::distance(state.joints[0].reaction.torque, glm::dvec3(0, 0, 0.2 * 2.0 * kGravity)), 0.0,
+              1e-9);
   EXPECT_NEAR(glm::distance(state.bodies[0].pose.position, glm::dvec3(0.2, 0, 0)), 0.0, 1e-10);
   EXPECT_TRUE(state.joints[0].joined);
 }
