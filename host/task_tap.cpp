@@ -85,6 +85,7 @@ TaskLines TaskTap::lines() const {
   const std::size_t done = state_.done.size();
   TaskLines lines;
   lines.hands = hands_;
+  lines.done = static_cast<std::uint32_t>(done);
   lines.hint = refused_;
   if (done == steps) {
     lines.title = "done";

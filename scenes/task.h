@@ -88,6 +88,7 @@ struct TaskLines {
   std::string now;              ///< what is measured, against what is wanted
   std::string hint;             ///< empty before its time, or why something has still to wait
   std::vector<HandMove> hands;  ///< that finished steps asked for, in order
+  std::uint32_t done = 0;       ///< steps that are
   bool operator==(const TaskLines&) const = default;
 };
 

@@ -247,7 +247,7 @@ void Server::send_cuts() {
   cuts_told_ = newest.bodies.cuts;
   cuts_run_ = newest.run;
   // Of a run that begins all bodies are whole.
-  if (cuts_told_) send_all(wire::to_message(*cuts_told_, cuts_run_), false, nullptr, wire::kCuts);
+  if (cuts_told_) send_all(wire::to_message(*cuts_told_, cuts_run_), false, nullptr, wire::kBodyCuts);
 }
 
 void Server::send_roster() {

@@ -123,7 +123,7 @@ void Server::welcome(Peer& peer, Seat& seat, bool restored) {
   send(peer, switches_.message());
   send_rights(peer, seat);
   if (!task_told_.title.empty() && (peer.agreed & wire::kTasks)) send(peer, task_message(task_told_));
-  if (cuts_told_ && (peer.agreed & wire::kCuts)) send(peer, wire::to_message(*cuts_told_, cuts_run_));
+  if (cuts_told_ && (peer.agreed & wire::kBodyCuts)) send(peer, wire::to_message(*cuts_told_, cuts_run_));
   if (switches_.waits_for_hands() && !peer.gone) send(peer, wire::Notice{switches_.waiting_text()});
   send_scene(peer);
   if (peer.gone) return;

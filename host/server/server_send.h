@@ -27,7 +27,7 @@ void Server::send(Peer& peer, const M& message) {
 }
 
 inline wire::Task task_message(const TaskLines& lines) {
-  return {lines.title, lines.say, lines.now, lines.hint, lines.hands};
+  return {lines.title, lines.say, lines.now, lines.hint, lines.hands, lines.done};
 }
 
 template <class M>

@@ -46,12 +46,15 @@ constexpr Capabilities kTasks = 1u << 8;
 constexpr Capabilities kTaskHands = 1u << 9;
 
 /// Cuts follows WorldInfo where bodies are cut, and each cut.
-constexpr Capabilities kCuts = 1u << 10;
+constexpr Capabilities kBodyCuts = 1u << 10;
+
+/// Task says how many steps are done.
+constexpr Capabilities kTaskSteps = 1u << 11;
 
 /// What this program understands; a peer's Hello asks for all of it.
 constexpr Capabilities kOurCapabilities = kRosterChanges | kFluidWrenches | kCouplings | kGripStiffnesses |
                                           kFeltHands | kNoTickAcks | kLinkRights | kHolds | kTasks |
-                                          kTaskHands | kCuts;
+                                          kTaskHands | kBodyCuts | kTaskSteps;
 /// For what has no other side: pages, tests of single messages, files.
 constexpr Capabilities kAllCapabilities = ~Capabilities{0};
 

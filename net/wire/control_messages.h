@@ -299,6 +299,7 @@ struct Task {
   std::string now;
   std::string hint;
   std::vector<HandMove> hands;  ///< behind kTaskHands: who holds `from` lets go and takes `to`, in order
+  std::uint32_t done = 0;       ///< behind kTaskSteps: steps that are
 };
 template <class V>
 void visit(V& v, Task& m) {
@@ -311,6 +312,7 @@ void visit(V& v, Task& m) {
       each.natural("from", move.from, 0, kMaxGrips - 1);
       each.natural("to", move.to, 0, kMaxGrips - 1);
     });
+  if (v.agreed(kTaskSteps)) v.natural("done", m.done, 0, kMaxTaskSteps);
 }
 
 /// Something to tell a person: who came, who went, what was refused.

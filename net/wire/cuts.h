@@ -48,7 +48,7 @@ void visit(V& v, CutEntry& m) {
 }
 
 /// All bodies that are cut, from one tick on: after the first WorldInfo where there are any, and after each
-/// cut. Behind kCuts.
+/// cut. Behind kBodyCuts.
 struct Cuts {
   static constexpr ControlType kType = ControlType::kCuts;
   std::uint32_t run = 0;

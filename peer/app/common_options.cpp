@@ -56,9 +56,10 @@ void add_never_a_window_option(CLI::App& verb, const std::string& text) {
 void add_show_options(CLI::App& verb, ShowOptions& options, bool has_window) {
   if (has_window) verb.add_flag("--headless", options.headless, "No window, even with a display");
   verb.add_option("--size", options.size, "Picture in pixels, WxH (1280x720)");
-  verb.add_option("--ghost", options.ghost,
-                  "Show the tools of an earlier run too, translucent, where its hands had them by then: its "
-                  "folder,\nor its poses.csv");
+  verb.add_option(
+      "--ghost", options.ghost,
+      "Show the tools of an earlier run too, translucent, where its hands had them by then, or at that "
+      "point\nof the task, whose steps it does as you do: its folder, or its poses.csv");
   verb.add_option("--guide", options.guide,
                   "Newtons, at most, that lead a hand to where the ghost's is: a force that never gives more "
                   "energy\nthan it took (of devices that give force)")

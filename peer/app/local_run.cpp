@@ -214,6 +214,7 @@ Rates LocalRun::world_rates() {
   if (task_tap_) {
     rates.task = task_tap_->lines();
     follow_task(rates.task.hands);
+    prepared_.ghost_clock->follow(rates.task.done, rates.time);
   }
   return rates;
 }

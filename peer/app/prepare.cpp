@@ -173,28 +173,6 @@ Result<bool> set_stage(const ShowOptions& options, bool headless, Stage& stage) 
   return true;
 }
 
-Result<bool> set_ghost(const ShowOptions& options, Stage& stage) {
-  if (options.ghost.empty()) {
-    if (options.guide > 0.0)
-      return Error{"--guide", "has no ghost to lead to", "Give a run with --ghost too"};
-    return true;
-  }
-  std::error_code unknown;
-  std::filesystem::path file = options.ghost;
-  if (std::filesystem::is_directory(file, unknown)) file /= "poses.csv";
-  std::optional<Error> none;
-  for (std::size_t i = 0; i < stage.scene.grips.size(); ++i) {
-    Result<std::vector<PoseKey>> way = read_poses(file, static_cast<int>(i));
-    if (way)
-      stage.ghost.push_back({i, std::move(way.value()), options.guide});
-    else if (!none)
-      none = way.error();
-  }
-  if (stage.ghost.empty() && none) return *none;
-  if (stage.ghost.empty()) return Error{"--ghost", "the scene has no grip that a hand could hold", ""};
-  return true;
-}
-
 Result<bool> set_exports(const ShowOptions& options, Stage& stage) {
   Result<std::vector<ExportKind>> exports = parse_exports(options.exports);
   if (!exports) return exports.error();

@@ -34,6 +34,7 @@ struct Stage {
   double row_rate = 500.0;          ///< of hands, rows a simulated second
   bool signals = false;             ///< of hands, each tick of the device loop
   std::vector<GuidedHand> ghost;    ///< hands of an earlier run, shown, and led to where `most` is above 0
+  std::shared_ptr<GhostClock> ghost_clock = std::make_shared<GhostClock>(std::vector<double>());  ///< theirs
 };
 
 struct Prepared : Stage {

@@ -92,6 +92,7 @@ Rates RemoteRun::world_rates() {
   rates.connection = connection_text(status_, visit_.world().maker->delay(), steady_now_ns());
   rates.people = people_text(status_, grip_names_);
   rates.task = status_.task;
+  stage_.ghost_clock->follow(rates.task.done, rates.time);
   return rates;
 }
 

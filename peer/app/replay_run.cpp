@@ -130,7 +130,10 @@ Rates ReplayRun::world_rates() {
   rates.time = shown_time_.load(std::memory_order_relaxed);
   rates.real_time = shown_rate_.load(std::memory_order_relaxed);
   rates.lost = shown_lost_.load(std::memory_order_relaxed);
-  if (task_) rates.task = task_->lines();
+  if (task_) {
+    rates.task = task_->lines();
+    stage_.ghost_clock->follow(rates.task.done, rates.time);
+  }
   return rates;
 }
 

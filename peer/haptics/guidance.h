@@ -2,8 +2,10 @@
 // than it took.
 #pragma once
 
+#include <memory>
 #include <vector>
 
+#include "peer/haptics/ghost_clock.h"
 #include "peer/haptics/pose_track.h"
 #include "scenes/scene.h"
 
@@ -23,7 +25,7 @@ class Guidance {
   /// `way`: of the handle, world, at least one key. `most`: N.
   Guidance(const std::vector<PoseKey>& way, double most) : way_(way, way.front().pose), most_(most) {}
 
-  /// N on the hand, world, for the next `dt` s. `time`: simulated s; `most_damping`: N·s/m that the device
+  /// N on the hand, world, for the next `dt` s. `time`: s of the recorded run; `most_damping`: N·s/m that the device
   /// holds. Neither allocates nor throws.
   glm::dvec3 force(double time, const glm::dvec3& hand, const glm::dvec3& velocity, double dt,
                    double most_damping) noexcept;
@@ -47,6 +49,7 @@ struct GuidedHand {
   std::size_t grip = 0;
   std::vector<PoseKey> way;
   double most = 0.0;
+  std::shared_ptr<const GhostClock> clock;  ///< of the ghost; never null
 };
 
 }  // namespace slosh

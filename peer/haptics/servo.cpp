@@ -44,7 +44,10 @@ Servo::Servo(const Scene& scene, std::vector<std::unique_ptr<Device>> devices, C
         grip_start(scene, i));
     hand.body = grip.body;
     for (const GuidedHand& guided : options_.guided)
-      if (guided.grip == i && guided.most > 0.0) hand.guide.emplace(guided.way, guided.most);
+      if (guided.grip == i && guided.most > 0.0) {
+        hand.guide.emplace(guided.way, guided.most);
+        hand.ghost = guided.clock;
+      }
     if (devices[i]) (void)set_device(i, std::move(devices[i]));
     if (DevicePort* const port = claim_device(hand)) change_device(hand, port);
   }
@@ -57,7 +60,7 @@ glm::dvec3 Servo::guidance(Hand& hand) noexcept {
     hand.guide->restart();
     return glm::dvec3(0.0);
   }
-  return hand.guide->force(time_, hand.good.pose.position, hand.good.twist.linear, options_.period,
+  return hand.guide->force(hand.ghost->at(time_), hand.good.pose.position, hand.good.twist.linear, options_.period,
                            hand.limits.max_damping);
 }
 

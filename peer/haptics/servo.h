@@ -120,6 +120,7 @@ class Servo {
     int body = 0;
     ForceRendering felt;
     std::optional<Guidance> guide;
+    std::shared_ptr<const GhostClock> ghost;
     ForceBudgetNote budget;
     DeviceReport good;
     Wrench given;                // in the last tick

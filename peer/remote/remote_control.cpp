@@ -207,7 +207,7 @@ wire::Fault RemoteLink::on_cuts(wire::ByteView payload) {
 wire::Fault RemoteLink::on_task(wire::ByteView payload) {
   wire::Task task;
   if (wire::Fault fault = wire::decode(payload, task, agreed_)) return fault;
-  status_.task = {task.title, task.say, task.now, task.hint, task.hands};
+  status_.task = {task.title, task.say, task.now, task.hint, task.hands, task.done};
   publish(now());
   return {};
 }

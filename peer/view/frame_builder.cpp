@@ -207,7 +207,7 @@ void FrameBuilder::show_ghost(const std::vector<GuidedHand>& hands) {
     const int body = scene_.grips[hand.grip].body;
     const auto there = std::ranges::find(placed_, body, &Placed::body);
     if (there != placed_.end())
-      ghosts_.push_back({hand.grip, PoseTrack(hand.way, hand.way.front().pose), there->whole});
+      ghosts_.push_back({hand.grip, PoseTrack(hand.way, hand.way.front().pose), there->whole, hand.clock});
   }
 }
 
@@ -217,7 +217,7 @@ void FrameBuilder::add_ghosts(const BodySnapshot& rigid, Frame& frame) {
     const auto body = static_cast<std::size_t>(grip.body);
     if (ghost.grip >= rigid.grips.size() || body >= rigid.bodies.size() || rigid.bodies[body].away())
       continue;
-    const Pose handle = ghost.way.at(rigid.time).pose;
+    const Pose handle = ghost.way.at(ghost.clock->at(rigid.time)).pose;
     // Where hand and ghost are one there is nothing to show: both drawn would only colour the tool.
     const Pose& held = rigid.grips[ghost.grip].pose;
     const double apart = glm::distance(handle.position, held.position) +

@@ -24,7 +24,7 @@ class FrameBuilder {
   /// HUD. `view_distance` (m, eye to target) sizes the force arrows.
   Frame build(const Snapshot& snapshot, double view_distance);
   /// From now on the bodies that these hands held are shown too, translucent, where a recorded run had them
-  /// by then: guidance's ways (peer/haptics/guidance.h).
+  /// by then, or at that point of its task: guidance's ways (peer/haptics/guidance.h).
   void show_ghost(const std::vector<GuidedHand>& hands);
   /// A hand's controller at `pose`, so that one sees one's own hands.
   void add_controller(const Pose& pose, double scale, Frame& frame) const;
@@ -44,6 +44,7 @@ class FrameBuilder {
     std::size_t grip;
     PoseTrack way;  // of the handle
     MeshHandle mesh;
+    std::shared_ptr<const GhostClock> clock;
   };
   class Textures;
 

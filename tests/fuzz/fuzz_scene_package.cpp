@@ -1,7 +1,7 @@
 // A scene's package, and what a peer does with the scene.
 #include <algorithm>
 
-#include "net/wire/scene_fields.h"
+#include "net/wire/acting_fields.h"
 #include "net/wire/scene_package.h"
 #include "tests/fuzz/messages.h"
 #include "tests/fuzz/seeds.h"
@@ -26,6 +26,10 @@ void check_scene(const Scene& scene) {
   for (const Body& body : scene.bodies) {
     test::must(at(scene.meshes, body.mesh) || (body.mesh == -1 && body.point_probe), "a body's mesh");
     test::must(body.motion == BodyMotion::kFixed || body.mass.mass > 0.0, "a free body's mass");
+    if (body.piece_of >= 0) {
+      test::must(at(scene.bodies, body.piece_of), "a piece's body");
+      test::must(scene.bodies[static_cast<std::size_t>(body.piece_of)].pieces >= 2, "which may be cut");
+    }
   }
   for (const Picture& picture : scene.pictures)
     test::must(at(scene.meshes, picture.mesh), "a picture's mesh");
@@ -67,7 +71,7 @@ std::vector<std::vector<std::uint8_t>> slosh_fuzz_seeds() {
     seeds.push_back(pack_scene(scene, 0.01, parts).value());
     // As it is, so that damage reaches the fields and not only zstd.
     std::vector<std::uint8_t> stored{1, 0};
-    wire::PackedScene packed{unpack_scene(seeds.back()).value().scene, 0.01};
+    wire::SceneAt<wire::kPlainScene> packed{{unpack_scene(seeds.back()).value().scene, 0.01}};
     wire::encode(packed, stored);
     seeds.push_back(stored);
   }
@@ -77,12 +81,18 @@ std::vector<std::vector<std::uint8_t>> slosh_fuzz_seeds() {
   for (TriangleMesh& mesh : textured.meshes) mesh.texcoords.resize(mesh.positions.size(), glm::vec2(0.5f));
   textured.bodies[0].material.maps.base_color.image = 0;
   textured.pictures[0].material.maps.normal.image = 1;
-  wire::TexturedScene whole{{{{{textured, 0.01}}}, textured.fluids}, {}, {}};
-  for (const TriangleMesh& mesh : textured.meshes) whole.texcoords.push_back(mesh.texcoords);
-  for (const Body& body : textured.bodies) whole.materials.push_back(body.material);
-  for (const Picture& picture : textured.pictures) whole.materials.push_back(picture.material);
-  std::vector<std::uint8_t> stored{5, 0};
-  wire::encode(whole, stored);
+  std::vector<std::uint8_t> stored{wire::kTexturedScene, 0};
+  wire::encode(wire::SceneAt<wire::kTexturedScene>{{textured, 0.01}}, stored);
+  seeds.push_back(stored);
+  // All that there is: what moves, comes and is cut, too.
+  Body piece = textured.bodies[0];
+  textured.bodies[0].pieces = 2;
+  piece.piece_of = 0;
+  piece.starts_away = true;
+  textured.bodies.push_back(piece);
+  textured.joints.push_back({"lid", JointKind::kHinge, 0, 1});
+  stored = {wire::kCutScene, 0};
+  wire::encode(wire::SceneAt<wire::kCutScene>{{textured, 0.01}}, stored);
   seeds.push_back(stored);
   return seeds;
 }

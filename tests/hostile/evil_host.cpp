@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "net/clock.h"
+#include "net/wire/acting_fields.h"
 #include "net/wire/scene_fields.h"
 #include "net/wire/scene_package.h"
 #include "tests/hostile/evil_guest.h"
@@ -151,7 +152,7 @@ void EvilHost::greet(Guest& guest) {
       wire::Bytes package = pack_scene(scene_, kSpacing, SceneParts::kSeen).value();
       if (m.one_in(2)) {
         // As it is, so that the damage reaches the fields and not only zstd.
-        const wire::PackedScene packed{unpack_scene(package).value().scene, kSpacing};
+        const wire::SceneAt<wire::kPlainScene> packed{{unpack_scene(package).value().scene, kSpacing}};
         package = {1, 0};
         const wire::Bytes fields = wire::damaged_message(packed, m.below(3000)).bytes;
         package.insert(package.end(), fields.begin(), fields.end());

@@ -99,5 +99,22 @@ TEST(Guidance, HoldsAgainstAGhostThatLeaps) {
   EXPECT_GT(least, -1e-4);
 }
 
+TEST(GhostClock, AGhostDoesEachStepWithItsPersonAndWaitsForThem) {
+  GhostClock clock({2.0, 5.0});
+  EXPECT_EQ(clock.at(1.5), 1.5);
+  EXPECT_EQ(clock.at(4.0), 2.0) << "it has done the first step, the person has not";
+  clock.follow(1, 6.0);
+  EXPECT_EQ(clock.at(6.0), 2.0);
+  EXPECT_EQ(clock.at(7.0), 3.0);
+  EXPECT_EQ(clock.at(100.0), 5.0);
+  clock.follow(1, 8.0);
+  EXPECT_EQ(clock.at(7.0), 3.0) << "no step was done since";
+  clock.follow(2, 8.0);
+  EXPECT_EQ(clock.at(9.0), 6.0) << "after its last step it goes on";
+  clock.follow(0, 0.25);
+  EXPECT_EQ(clock.at(1.25), 1.0) << "set back";
+  EXPECT_EQ(GhostClock({}).at(3.0), 3.0) << "a run without a task goes by the world's time";
+}
+
 }  // namespace
 }  // namespace slosh

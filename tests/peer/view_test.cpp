@@ -89,8 +89,9 @@ TEST(Ghost, StandsWhereTheRecordedHandHadTheToolAndFadesWhereBothAreOne) {
   scene.grips[0].pose.position = {0.05, 0.0, 0.0};
   NoMeshes meshes;
   FrameBuilder builder(scene, 0.01, meshes);
+  const auto clock = std::make_shared<GhostClock>(std::vector<double>());
   builder.show_ghost(
-      {{0, {{0.0, {{0.05, 0.0, 0.0}, {1, 0, 0, 0}}}, {2.0, {{0.05, 0.2, 0.0}, {1, 0, 0, 0}}}}, 0.0}});
+      {{0, {{0.0, {{0.05, 0.0, 0.0}, {1, 0, 0, 0}}}, {2.0, {{0.05, 0.2, 0.0}, {1, 0, 0, 0}}}}, 0.0, clock}});
   Snapshot snapshot;
   snapshot.rigid.bodies.resize(1);
   snapshot.rigid.grips.resize(1);
