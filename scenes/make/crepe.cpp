@@ -308,11 +308,15 @@ SceneWriter make_crepe() {
   const int fat = writer.add_material("butter", {{0.96, 0.82, 0.36, 1.0}, 0.0, 0.45});
   writer.add_node("board",
                   writer.add_mesh("board", box({-0.075, 0.0, -0.045}, {0.075, kBoardTop, 0.045}), wood),
-                  {kBoardAt, {1.0, 0.0, 0.0, 0.0}}, {{"slosh", "body"}});
-  writer.add_node(
-      "butter_block", writer.add_mesh("butter_block", box(-kButterHalf, kButterHalf), fat),
-      {kBoardAt + glm::dvec3(0.0, kBoardTop + kButterHalf.y, 0.0), {1.0, 0.0, 0.0, 0.0}},
-      {{"slosh", "body"}, {"motion", "free"}, {"density_kg_m3", 910.0}, {"pieces", 2}, {"cut_n_m", 150.0}});
+                  {kBoardAt, {1.0, 0.0, 0.0, 0.0}}, {{"slosh", "body"}, {"viscosity_pa_s", 0.0}});
+  writer.add_node("butter_block", writer.add_mesh("butter_block", box(-kButterHalf, kButterHalf), fat),
+                  {kBoardAt + glm::dvec3(0.0, kBoardTop + kButterHalf.y, 0.0), {1.0, 0.0, 0.0, 0.0}},
+                  {{"slosh", "body"},
+                   {"motion", "free"},
+                   {"density_kg_m3", 910.0},
+                   {"viscosity_pa_s", 0.0},
+                   {"pieces", 2},
+                   {"cut_n_m", 150.0}});
   nlohmann::json knife_body = free_body;
   knife_body["mass_kg"] = 0.12;
   knife_body["starts_away"] = true;
