@@ -25,8 +25,8 @@ class Guidance {
   /// `way`: of the handle, world, at least one key. `most`: N.
   Guidance(const std::vector<PoseKey>& way, double most) : way_(way, way.front().pose), most_(most) {}
 
-  /// N on the hand, world, for the next `dt` s. `time`: s of the recorded run; `most_damping`: N·s/m that the device
-  /// holds. Neither allocates nor throws.
+  /// N on the hand, world, for the next `dt` s. `time`: s of the recorded run; `most_damping`: N·s/m that the
+  /// device holds. Neither allocates nor throws.
   glm::dvec3 force(double time, const glm::dvec3& hand, const glm::dvec3& velocity, double dt,
                    double most_damping) noexcept;
   /// The hand was put elsewhere, or let go: what it did since the last force() counts for nothing.

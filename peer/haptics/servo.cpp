@@ -60,8 +60,8 @@ glm::dvec3 Servo::guidance(Hand& hand) noexcept {
     hand.guide->restart();
     return glm::dvec3(0.0);
   }
-  return hand.guide->force(hand.ghost->at(time_), hand.good.pose.position, hand.good.twist.linear, options_.period,
-                           hand.limits.max_damping);
+  return hand.guide->force(hand.ghost->at(time_), hand.good.pose.position, hand.good.twist.linear,
+                           options_.period, hand.limits.max_damping);
 }
 
 Servo::~Servo() {
