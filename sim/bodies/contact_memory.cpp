@@ -32,6 +32,13 @@ glm::dvec3 ContactMemory::recall(const Contact& contact, const std::vector<Rigid
   return contact.a == here.first ? nearest->impulse : -nearest->impulse;
 }
 
+glm::dvec3 ContactMemory::recall(const Contact& contact, std::size_t place, std::size_t count,
+                                 const std::vector<RigidBody>& bodies) const {
+  const std::span<const KeptImpulse> known = between(contact.a, contact.b);
+  if (known.size() != count) return recall(contact, bodies);
+  return contact.a < contact.b ? known[place].impulse : -known[place].impulse;
+}
+
 std::span<const KeptImpulse> ContactMemory::between(int body, int other) const {
   KeptImpulse wanted;
   wanted.first = std::min(body, other);

@@ -33,6 +33,10 @@ class ContactMemory {
 
   /// N·s on contact.a, by the one that was within half a spacing of it; zero where there was none.
   glm::dvec3 recall(const Contact& contact, const std::vector<RigidBody>& bodies) const;
+  /// Likewise where several are at one point: by its place among the pair's contacts, while there are as
+  /// many as there were.
+  glm::dvec3 recall(const Contact& contact, std::size_t place, std::size_t count,
+                    const std::vector<RigidBody>& bodies) const;
   /// Those of two bodies, in the order in which they were chosen.
   std::span<const KeptImpulse> between(int body, int other) const;
 

@@ -144,7 +144,7 @@ SLOSH_HD inline ContactRows make_rows(const Contact& c, const ContactMaterial& m
 
 /// Begins with an impulse (N·s on a) in place of none, as far as the contact can give it.
 SLOSH_HD inline void begin_with(ContactRows& rows, const glm::dvec3& impulse, Vector6& a, Vector6& b) {
-  const double normal = glm::max(glm::dot(impulse, rows.n), 0.0);
+  const double normal = glm::min(glm::max(glm::dot(impulse, rows.n), 0.0), rows.most);
   glm::dvec2 along(glm::dot(impulse, rows.u), glm::dot(impulse, rows.v));
   const double limit = rows.friction * normal;
   const double length = glm::length(along);

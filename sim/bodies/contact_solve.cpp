@@ -140,6 +140,10 @@ class Iteration {
   Vector6 world_{};  // stands still
 };
 
+bool same_pair(const Contact& a, const Contact& b) {
+  return std::minmax(a.a, a.b) == std::minmax(b.a, b.b);
+}
+
 }  // namespace
 
 void solve_contacts(const std::vector<Contact>& contacts, const std::vector<ContactMaterial>& materials,
@@ -149,14 +153,23 @@ void solve_contacts(const std::vector<Contact>& contacts, const std::vector<Cont
   std::vector<glm::dvec3> begin;
   all.reserve(contacts.size());
   begin.reserve(contacts.size());
-  for (const Contact& c : contacts) {
+  std::size_t first = 0, last = 0;  // of the pair's
+  for (std::size_t i = 0; i < contacts.size(); ++i) {
+    const Contact& c = contacts[i];
+    if (i == last) {
+      const auto other = std::find_if(contacts.begin() + static_cast<std::ptrdiff_t>(i), contacts.end(),
+                                      [&](const Contact& next) { return !same_pair(next, c); });
+      first = i;
+      last = static_cast<std::size_t>(other - contacts.begin());
+    }
     const ContactMaterial& a = materials[c.a];
     const ContactMaterial& b = materials[c.b];
     const ContactMaterial material{std::min(a.friction, b.friction), std::max(a.restitution, b.restitution)};
     all.push_back(
         rows::make_rows(c, c.of_blade ? ContactMaterial{} : material, bodies.data(), dt, solves.data()));
-    // Several of a blade's are at one place: which is which is not known again.
-    begin.push_back(c.of_blade ? glm::dvec3(0.0) : memory.recall(c, bodies));
+    // Several of a blade's are at one point.
+    begin.push_back(c.of_blade ? memory.recall(c, i - first, last - first, bodies)
+                               : memory.recall(c, bodies));
   }
   Spreads spreads(joints ? contacts.size() : 0);
   for (std::size_t i = 0; i < spreads.size(); ++i) {

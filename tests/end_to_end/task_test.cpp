@@ -14,16 +14,17 @@ namespace {
 
 using test::PlayTest;
 
-/// Stirred, poured, spread, set, pressed and served with butter and syrup, by the shipped scene's hands.
+/// Stirred, poured, spread, set, pressed and served with butter that is cut, and syrup, by the shipped
+/// scene's hands.
 TEST_F(PlayTest, ScriptedHandsFinishTheCrepe) {
   const test::Outcome outcome =
       test::slosh({"play", "crepe", "--headless", "--no-render", "--unpaced", "--spacing", "0.009",
                    "--threads", "1", "--out", "out", "--score", "crepe.csv"});
   ASSERT_EQ(outcome.code, 0) << outcome.err;
   const auto summary = nlohmann::json::parse(test::read_text(out() / "summary.json"));
-  ASSERT_EQ(summary["task"].size(), 8u);
+  ASSERT_EQ(summary["task"].size(), 9u);
   for (const auto& step : summary["task"]) EXPECT_TRUE(step["done"].get<bool>()) << step;
-  EXPECT_NE(outcome.out.find("Task: 8 of 8 steps done"), std::string::npos) << outcome.out;
+  EXPECT_NE(outcome.out.find("Task: 9 of 9 steps done"), std::string::npos) << outcome.out;
   EXPECT_LT(summary["particles"]["spilled"].get<int>(), 20);
   EXPECT_EQ(summary["particles"]["lost"], 0);
   EXPECT_LT(summary["task_spilled_kg"].get<double>(), 0.03);
@@ -31,13 +32,13 @@ TEST_F(PlayTest, ScriptedHandsFinishTheCrepe) {
   // Its score, and how it is told beside the next run's.
   const std::string rows = test::read_text(test::test_folder() / "crepe.csv");
   EXPECT_EQ(std::ranges::count(rows, '\n'), 2) << rows;
-  EXPECT_NE(rows.find(",crepe,8,8,"), std::string::npos) << rows;
+  EXPECT_NE(rows.find(",crepe,9,9,"), std::string::npos) << rows;
   const test::Outcome next =
       test::slosh({"play", "crepe", "--headless", "--no-render", "--unpaced", "--spacing", "0.009",
                    "--seconds", "0.2", "--score", "crepe.csv", "--ghost", "out", "--guide", "3"});
   ASSERT_EQ(next.code, 0) << next.err;
-  EXPECT_NE(next.out.find("this run              0 of 8"), std::string::npos) << next.out;
-  EXPECT_NE(next.out.find("  8 of 8 "), std::string::npos) << next.out;
+  EXPECT_NE(next.out.find("this run              0 of 9"), std::string::npos) << next.out;
+  EXPECT_NE(next.out.find("  9 of 9 "), std::string::npos) << next.out;
 }
 
 TEST_F(PlayTest, AScoreOrGhostThatCannotBeIsRefusedBeforeTheRun) {
