@@ -124,7 +124,7 @@ Pose pan_pose(double seconds) {
   const glm::dquat turn = glm::angleAxis(over, glm::dvec3(0.0, 0.0, 1.0)) * round;
   const double up =
       follow({{11.2, 0.0}, {11.8, 0.03}, {15.0, 0.03}, {15.8, 0.0}, {19.5, 0.0}, {21.0, 0.12}}, time);
-  const double to_plate = follow({{20.0, 0.0}, {21.5, -0.17}, {24.5, -0.17}, {26.5, 0.05}}, time);
+  const double to_plate = follow({{20.0, 0.0}, {21.5, -0.145}, {24.5, -0.145}, {26.5, 0.05}}, time);
   return {{to_plate, kCrepeHeld + up, 0.0}, turn};
 }
 
