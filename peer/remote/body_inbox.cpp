@@ -67,6 +67,7 @@ BodyInbox::BodyInbox(const Scene& scene, double time_step)
 void BodyInbox::restart() {
   state_.fluid_models.clear();
   models_run_ = 0;
+  cuts_.clear();  // a host tells them anew
   pending_.clear();
   given_ = newest_fresh_ = false;
   newest_tick_ = 0;

@@ -111,6 +111,7 @@ void ScriptedPeer::on_stream(ConnectionId, std::int64_t stream, std::span<const 
       if constexpr (std::is_same_v<M, wire::WorldInfo>) keep(worlds, message);
       if constexpr (std::is_same_v<M, wire::Rights>) keep(rights, message);
       if constexpr (std::is_same_v<M, wire::Task>) keep(tasks, message);
+      if constexpr (std::is_same_v<M, wire::Cuts>) keep(cuts, message);
       if constexpr (std::is_same_v<M, wire::Notice>) keep(notices, message.text);
     };
     return wire::dispatch(wire::HostControl{}, type, payload, take, capabilities & wire::kOurCapabilities);
@@ -193,10 +194,12 @@ void ServedTest::go(double seconds, double step, const std::function<void()>& ea
   }
 }
 
-void ServedTest::publish_bodies(std::uint64_t tick, const std::vector<std::uint64_t>& pose_numbers) {
+void ServedTest::publish_bodies(std::uint64_t tick, const std::vector<std::uint64_t>& pose_numbers,
+                                std::shared_ptr<const BodyCuts> cuts) {
   BodyMessage& message = channel.bodies().back();
   message = first_state(scene);
   message.bodies.tick = tick;
+  message.bodies.cuts = std::move(cuts);
   message.bodies.time = 0.002 * static_cast<double>(tick);
   message.rate = 1.0;
   message.stamp_ns = network.now_ns();

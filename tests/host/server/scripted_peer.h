@@ -65,6 +65,7 @@ class ScriptedPeer final : public EndpointEvents {
   std::vector<wire::WorldInfo> worlds;
   std::vector<wire::Rights> rights;
   std::vector<wire::Task> tasks;
+  std::vector<wire::Cuts> cuts;
   std::vector<std::string> notices;
   std::vector<wire::ClockPong> pongs;
   std::vector<wire::Bodies> bodies;
@@ -106,7 +107,8 @@ class ServedTest : public ::testing::Test {
   /// Everybody runs for so long, in steps of 5 ms (or longer ones). Calls `each` at every step.
   void go(double seconds, double step = 0.005, const std::function<void()>& each = {});
   /// The host's thread would publish this.
-  void publish_bodies(std::uint64_t tick, const std::vector<std::uint64_t>& pose_numbers = {});
+  void publish_bodies(std::uint64_t tick, const std::vector<std::uint64_t>& pose_numbers = {},
+                      std::shared_ptr<const BodyCuts> cuts = {});
   /// What the world would take now: the newest message of a grip.
   const PoseMessage& pose(std::size_t grip);
 

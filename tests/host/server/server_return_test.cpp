@@ -165,5 +165,33 @@ TEST_F(ServerTest, ARunGoesOnAfterARestart) {
   back.vanish();
 }
 
+TEST_F(ServerTest, EverybodyIsToldOfCutsAndWhoComesLaterToo) {
+  ScriptedPeer& ana = join(1, "Ana");
+  ScriptedPeer& old = *peers.emplace_back(std::make_unique<ScriptedPeer>(network, 2));
+  old.capabilities &= ~wire::kBodyCuts;
+  old.hello(hold, "Old");
+  publish_bodies(1);
+  go(0.1);
+  EXPECT_TRUE(ana.cuts.empty()) << "all is whole";
+  const auto cuts = std::make_shared<BodyCuts>();
+  cuts->since = 7;
+  cuts->bodies.resize(scene.bodies.size());
+  cuts->bodies[0] = {{{{0.0, 1.0, 0.0}, 0.02}}, {0.25, glm::dvec3(0.0), glm::dmat3(1e-3)}};
+  for (std::uint64_t tick = 7; tick < 12; ++tick) {
+    publish_bodies(tick, {}, cuts);
+    go(0.02);
+  }
+  ASSERT_EQ(ana.cuts.size(), 1u) << "once";
+  EXPECT_EQ(ana.cuts[0].since, 7u);
+  ASSERT_EQ(ana.cuts[0].bodies.size(), 1u) << "of what is whole nothing is said";
+  EXPECT_EQ(ana.cuts[0].bodies[0].cut.planes, cuts->bodies[0].planes);
+  EXPECT_EQ(ana.cuts[0].bodies[0].cut.mass, cuts->bodies[0].mass);
+  EXPECT_TRUE(old.cuts.empty()) << "an earlier peer is not told what it does not know";
+  const ScriptedPeer& eve = join(3, watch, "Eve");
+  ASSERT_EQ(eve.cuts.size(), 1u);
+  EXPECT_EQ(eve.cuts[0].bodies[0].cut.mass.mass, 0.25);
+  EXPECT_TRUE(ana.fault.empty() && eve.fault.empty());
+}
+
 }  // namespace
 }  // namespace slosh

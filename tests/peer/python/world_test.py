@@ -179,6 +179,30 @@ class Runs(unittest.TestCase):
             changes = [change[1] for change in slosh.Recording(file).changes]
             self.assertEqual(changes, ["take_away", "take_away", "appear", "appear"])
 
+    def test_a_body_is_cut(self):
+        builder = slosh.SceneBuilder(title="butter", domain_min_m=[-1, -1, -1], domain_max_m=[1, 1, 1])
+        builder.body("board", slosh.box((-0.2, -0.05, -0.2), (0.2, 0, 0.2)))
+        builder.body("butter", slosh.box((-0.05, 0, -0.02), (0.05, 0.04, 0.02)), motion="free",
+                     density_kg_m3=900, pieces=2)
+        w = slosh.World(builder.scene(), 0.01)
+        w.run(0.1)
+        self.assertGreater(w.body("butter~2").pose.position[0], 1000, "not there yet")
+        with self.assertRaises(slosh.Error) as raised:
+            w.cut("butter", (1, 0, 0), 0.2)
+        self.assertIn("is missed", str(raised.exception))
+        self.assertEqual(w.cut("butter", (1, 0, 0), 0.01), "butter~2")
+        w.run(0.2)
+        # 6 cm stay, 4 cm come off, and stand where they stood.
+        self.assertAlmostEqual(w.body("butter").center_of_mass[0], -0.02, 4)
+        self.assertAlmostEqual(w.body("butter~2").center_of_mass[0], 0.03, 4)
+        with self.assertRaises(slosh.Error) as raised:
+            w.cut("butter", (1, 0, 0), 0.0)
+        self.assertIn("has all its 2 pieces", str(raised.exception))
+        with tempfile.TemporaryDirectory() as folder:
+            w.record(os.path.join(folder, "run.rec"))
+            with self.assertRaises(slosh.Error):
+                w.cut("board", (1, 0, 0), 0.0)
+
     def test_it_follows_a_task(self):
         self.assertIsNone(world().task)
         builder = slosh.SceneBuilder(title="dip", task=[

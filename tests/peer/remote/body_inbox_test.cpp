@@ -375,6 +375,8 @@ TEST(BodyInbox, CutsHoldFromTheirTickOnInTheirRun) {
   cut(5, 0.25);
   EXPECT_EQ(left(7), 0.25) << "it came after its state";
   EXPECT_EQ(left(8, 1), 0.0) << "the world was reset";
+  box.inbox.restart();
+  EXPECT_EQ(left(9), 0.0) << "a host that carries on from before the cut";
 }
 
 wire::FluidWrench wrench_on(std::uint32_t body, std::uint64_t tick, double force, std::uint32_t run = 0) {
