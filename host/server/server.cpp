@@ -8,7 +8,6 @@
 #include "net/grip_start.h"
 #include "net/random.h"
 #include "net/site.h"
-#include "net/wire/cuts.h"
 
 namespace slosh {
 namespace {
@@ -231,23 +230,6 @@ void Server::turn() {
   if (world_.task && now() - task_asked_ns_ >= kTaskEvery) send_task();
   if (state_dirty_) save_state();
   peers_.sweep();
-}
-
-void Server::send_task() {
-  task_asked_ns_ = now();
-  const TaskLines lines = world_.task();
-  if (lines == task_told_) return;
-  task_told_ = lines;
-  send_all(task_message(lines), false, nullptr, wire::kTasks);
-}
-
-void Server::send_cuts() {
-  const BodyMessage& newest = states_.newest();
-  if (newest.bodies.cuts == cuts_told_) return;
-  cuts_told_ = newest.bodies.cuts;
-  cuts_run_ = newest.run;
-  // Of a run that begins all bodies are whole.
-  if (cuts_told_) send_all(wire::to_message(*cuts_told_, cuts_run_), false, nullptr, wire::kBodyCuts);
 }
 
 void Server::send_roster() {

@@ -243,7 +243,6 @@ class Server final : public EndpointEvents, public HostTap {
   std::int64_t roster_sent_ns_ = 0;
   TaskLines task_told_;
   std::shared_ptr<const BodyCuts> cuts_told_;
-  std::uint32_t cuts_run_ = 0;  // that they are of
   std::int64_t task_asked_ns_ = 0;
   std::int64_t checked_ns_ = 0;
   bool quit_asked_ = false;

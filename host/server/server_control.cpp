@@ -123,7 +123,8 @@ void Server::welcome(Peer& peer, Seat& seat, bool restored) {
   send(peer, switches_.message());
   send_rights(peer, seat);
   if (!task_told_.title.empty() && (peer.agreed & wire::kTasks)) send(peer, task_message(task_told_));
-  if (cuts_told_ && (peer.agreed & wire::kBodyCuts)) send(peer, wire::to_message(*cuts_told_, cuts_run_));
+  if (cuts_told_ && (peer.agreed & wire::kBodyCuts))
+    send(peer, wire::to_message(*cuts_told_, states_.newest().run));
   if (switches_.waits_for_hands() && !peer.gone) send(peer, wire::Notice{switches_.waiting_text()});
   send_scene(peer);
   if (peer.gone) return;
@@ -134,6 +135,22 @@ void Server::welcome(Peer& peer, Seat& seat, bool restored) {
              !may_hold(seat.role), &peer);
   roster_changed();
   start_if_held();
+}
+
+void Server::send_task() {
+  task_asked_ns_ = now();
+  const TaskLines lines = world_.task();
+  if (lines == task_told_) return;
+  task_told_ = lines;
+  send_all(task_message(lines), false, nullptr, wire::kTasks);
+}
+
+void Server::send_cuts() {
+  const BodyMessage& newest = states_.newest();
+  if (newest.bodies.cuts == cuts_told_) return;
+  cuts_told_ = newest.bodies.cuts;
+  // Of a run that begins all bodies are whole.
+  if (cuts_told_) send_all(wire::to_message(*cuts_told_, newest.run), false, nullptr, wire::kBodyCuts);
 }
 
 void Server::send_scene(Peer& peer) {
