@@ -50,10 +50,16 @@ Result<CutPlane> World::Impl::side_that_stays(std::size_t body, const CutPlane& 
 
 namespace {
 
-Error no_room(const std::string& name, std::size_t particles, std::size_t room) {
-  return {"'" + name + "'",
-          format("would have %zu particles in one piece, and there is room for %zu", particles, room),
-          "Cut elsewhere"};
+/// Fills the room that there is for a body's particles. Error: they are more.
+std::optional<Error> fit(const std::string& name, std::size_t room, std::size_t body,
+                         std::vector<SurfaceParticle>& particles) {
+  if (particles.size() > room)
+    return Error{
+        "'" + name + "'",
+        format("would have %zu particles in one piece, and there is room for %zu", particles.size(), room),
+        "Cut elsewhere"};
+  particles.resize(room, nobody(body));
+  return std::nullopt;
 }
 
 }  // namespace
@@ -62,9 +68,7 @@ Result<std::vector<SurfaceParticle>> World::Impl::particles_of(std::size_t body,
                                                                const PieceShape& shape) const {
   std::vector<SurfaceParticle> particles =
       particles_of_piece(scene, plan(), drags_from, body, shape.surface, shape.field.view());
-  const std::size_t room = piece_slots[body].count;
-  if (particles.size() > room) return no_room(scene.bodies[body].name, particles.size(), room);
-  particles.resize(room, nobody(body));
+  if (auto error = fit(scene.bodies[body].name, piece_slots[body].count, body, particles)) return *error;
   return particles;
 }
 
@@ -139,9 +143,7 @@ Result<std::size_t> World::Impl::cut_body(std::size_t body, CutPlane plane) {
   if (!made) return made.error();
   Parts& two = made.value();
   for (const auto& [each, particles] : {std::pair(body, &two.of_rest), std::pair(piece, &two.of_off)}) {
-    const std::size_t room = piece_slots[each].count;
-    if (particles->size() > room) return no_room(scene.bodies[body].name, particles->size(), room);
-    particles->resize(room, nobody(each));
+    if (auto error = fit(scene.bodies[body].name, piece_slots[each].count, each, *particles)) return *error;
     for (SurfaceParticle& particle : *particles) particle.body = static_cast<std::uint16_t>(each);
   }
   // Its own side, whichever way the plane came.
