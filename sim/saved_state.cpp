@@ -81,15 +81,20 @@ void joint_state(S& s, J& joint, M& mean) {
   wrench(s, mean.reaction);
 }
 
+/// A byte for one of the values up to `last`.
+template <class S, class C, class E>
+void choice(S& s, C& value, E last, const char* problem) {
+  auto byte = static_cast<std::uint8_t>(value);
+  s.raw(byte);
+  if constexpr (S::kReads) {
+    if (s.ok() && byte > static_cast<std::uint8_t>(last)) return s.fail(problem);
+    value = static_cast<E>(byte);
+  }
+}
+
 template <class S, class J>
 void joint_hold(S& s, J& joint) {
-  auto hold = static_cast<std::uint8_t>(joint.hold);
-  s.raw(hold);
-  if constexpr (S::kReads) {
-    if (s.ok() && hold > static_cast<std::uint8_t>(JointHold::kOpen))
-      return s.fail("a joint in it neither holds nor is open");
-    joint.hold = static_cast<JointHold>(hold);
-  }
+  choice(s, joint.hold, JointHold::kOpen, "a joint in it neither holds nor is open");
   three(s, joint.rest.position);
   rotation(s, joint.rest.orientation);
 }
@@ -111,13 +116,7 @@ void incision(S& s, I& i) {
   cut_plane(s, i.plane);
   three(s, i.way);
   s.real(i.front);
-  auto stage = static_cast<std::uint8_t>(i.stage);
-  s.raw(stage);
-  if constexpr (S::kReads) {
-    if (s.ok() && stage > static_cast<std::uint8_t>(CutStage::kParting))
-      return s.fail("a blade in it neither cuts nor is through");
-    i.stage = static_cast<CutStage>(stage);
-  }
+  choice(s, i.stage, CutStage::kParting, "a blade in it neither cuts nor is through");
 }
 
 void write_cuts(StateSink& s, const SavedState& state) {
