@@ -17,10 +17,10 @@ BodyWalls::BodyWalls(const Scene& scene, float clearance) : scene_(scene), clear
 
 void BodyWalls::follow_cuts(const BodyCuts* cuts) {
   for (Wall& wall : walls_) {
-    const BodyCut* const cut = cuts ? cuts->of(wall.body) : nullptr;
-    if (cut ? cut->planes == wall.planes : wall.planes.empty()) continue;
+    const std::span<const CutPlane> planes = planes_of(cuts, wall.body);
+    if (std::ranges::equal(planes, wall.planes)) continue;
     const TriangleMesh& mesh = scene_.meshes[static_cast<std::size_t>(scene_.bodies[wall.body].mesh)];
-    wall.planes = cut ? cut->planes : std::vector<CutPlane>();
+    wall.planes.assign(planes.begin(), planes.end());
     wall.tree = mesh::MeshTree(cut_mesh(mesh, wall.planes));
   }
 }

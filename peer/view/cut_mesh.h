@@ -4,7 +4,7 @@
 #include <span>
 
 #include "scenes/scene.h"
-#include "sim/math/cut_plane.h"
+#include "sim/math/body_cuts.h"
 
 namespace slosh {
 
@@ -12,5 +12,11 @@ namespace slosh {
 /// on over the edges. A cut face shows the corner of its textures. Of any other mesh something is left that
 /// can be drawn, of one with more than kMaxCutTriangles all of it.
 TriangleMesh cut_mesh(const TriangleMesh& mesh, std::span<const CutPlane> planes);
+
+/// Those that bound a body now; none where it is whole.
+inline std::span<const CutPlane> planes_of(const BodyCuts* cuts, std::size_t body) {
+  const BodyCut* const cut = cuts ? cuts->of(body) : nullptr;
+  return cut ? std::span<const CutPlane>(cut->planes) : std::span<const CutPlane>();
+}
 
 }  // namespace slosh

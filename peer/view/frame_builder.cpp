@@ -187,15 +187,14 @@ void FrameBuilder::follow_cuts(const BodyCuts* cuts) {
   for (Placed& placed : placed_) {
     if (placed.body < 0) continue;
     const auto body = static_cast<std::size_t>(placed.body);
-    const BodyCut* const cut = cuts ? cuts->of(body) : nullptr;
-    if (cut ? cut->planes == placed.planes : placed.planes.empty()) continue;
+    const std::span<const CutPlane> planes = planes_of(cuts, body);
+    if (std::ranges::equal(planes, placed.planes)) continue;
     if (placed.mesh != placed.whole) meshes_.remove_mesh(placed.mesh);
     placed.mesh = placed.whole;
-    placed.planes.clear();
-    if (!cut) continue;
-    placed.planes = cut->planes;
+    placed.planes.assign(planes.begin(), planes.end());
+    if (planes.empty()) continue;
     const auto whole = static_cast<std::size_t>(scene_.bodies[body].mesh);
-    const TriangleMesh mesh = cut_mesh(scene_.meshes[whole], cut->planes);
+    const TriangleMesh mesh = cut_mesh(scene_.meshes[whole], planes);
     placed.mesh = meshes_.add_mesh(mesh.positions, mesh.normals, mesh.triangles, mesh.texcoords);
   }
 }
