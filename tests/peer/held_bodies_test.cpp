@@ -15,6 +15,18 @@ struct Site {
   bool modelled = true;  // and says a model of the fluid's wrench
 };
 
+/// Of tick `i` of a device loop at 1 kHz, beside a world at 100 Hz.
+BodyMessage state_at(int i, std::int64_t now_ns) {
+  BodyMessage message = test::ServoKit::first();
+  message.rate = 1.0;
+  message.time_step = 0.01;
+  message.stamp_ns = now_ns;
+  message.bodies.tick = static_cast<std::uint64_t>(1 + i / 10);
+  message.bodies.time = 0.001 * i;
+  message.bodies.grips[0].on_hand.force.x = 1e-6;  // somebody holds it
+  return message;
+}
+
 /// How far the replica counts after `seconds` of states at 100 Hz.
 double share_of(const Site& site, double seconds) {
   Scene scene = test::one_grip_scene();
@@ -27,13 +39,7 @@ double share_of(const Site& site, double seconds) {
   for (int i = 0; i < static_cast<int>(seconds / 0.001); ++i, now_ns += 1'000'000) {
     const bool fresh = i % 10 == 0;
     if (fresh) {
-      message = test::ServoKit::first();
-      message.rate = 1.0;
-      message.time_step = 0.01;
-      message.stamp_ns = now_ns;
-      message.bodies.tick = static_cast<std::uint64_t>(1 + i / 10);
-      message.bodies.time = 0.001 * i;
-      message.bodies.grips[0].on_hand.force.x = 1e-6;  // somebody holds it
+      message = state_at(i, now_ns);
       message.heard_pose_ns = site.here ? kPoseNotTold : now_ns;
       message.hands.resize(1);
       message.hands[0].number = message.bodies.tick;
@@ -73,13 +79,7 @@ double pulled_to(double mass, const std::shared_ptr<const BodyCuts>& cuts) {
   for (int i = 0; i < 1005; ++i, now_ns += 1'000'000) {
     const bool fresh = i % 10 == 0;
     if (fresh) {
-      message = test::ServoKit::first();
-      message.rate = 1.0;
-      message.time_step = 0.01;
-      message.stamp_ns = now_ns;
-      message.bodies.tick = static_cast<std::uint64_t>(1 + i / 10);
-      message.bodies.time = 0.001 * i;
-      message.bodies.grips[0].on_hand.force.x = 1e-6;
+      message = state_at(i, now_ns);
       message.bodies.cuts = cuts;
       message.fluid_models.emplace_back().tick = message.bodies.tick;
     }
