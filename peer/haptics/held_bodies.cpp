@@ -56,7 +56,8 @@ HeldBodies::HeldBodies(const Scene& scene, Coupling coupling)
     for (std::size_t i = 0; i < places.size(); ++i)
       places_[places[i]] = {static_cast<int>(bodies_.size()), i};
     const std::size_t count = grips.size();
-    bodies_.push_back({b, std::move(places), HeldBody(body, std::move(grips)), std::vector<OwnHand>(count),
+    bodies_.push_back({b, std::move(places), HeldBody(body, std::move(grips)),
+                       std::vector<OwnHand>(count, {.here = true, .feels = true}),
                        std::vector<MotionError>(count), std::vector<HostHand>(count), 0.0, false, false,
                        source.mass});
   }
@@ -84,9 +85,13 @@ void HeldBodies::update(const BodyMessage& newest, bool fresh, std::int64_t now_
   run_ = newest.run;
   received_ns_ = now_ns;
   for (Entry& entry : bodies_) {
-    if (begin) restart(entry);
+    const bool nobody = std::ranges::none_of(entry.own, &OwnHand::here);
+    if (begin || (nobody && entry.held.started())) restart(entry);
     follow_cuts(entry, newest.bodies.cuts.get());
-    tell(entry, newest, now_ns);
+    if (nobody)
+      entry.share = 0.0;  // what nobody here holds is not worked out: whoever takes it up begins anew
+    else
+      tell(entry, newest, now_ns);
   }
 }
 
@@ -144,6 +149,7 @@ void HeldBodies::tell(Entry& entry, const BodyMessage& newest, std::int64_t now_
   word.hands = entry.said;
   word.tells_fluid = true;
   word.fluid = body.fluid;
+  word.felt = std::ranges::any_of(entry.own, &OwnHand::feels);
   entry.held.receive(word);
 }
 
@@ -227,13 +233,13 @@ void HeldBodies::catch_up(std::int64_t now_ns, double period, double pace, doubl
   }
 }
 
-void HeldBodies::sent(std::size_t i, const Wrench& wrench, bool engaged, const Pose& held, const Twist& twist,
-                      double ramp_work, bool with_world) noexcept {
+void HeldBodies::sent(std::size_t i, const Wrench& wrench, const OwnHand& hand, double ramp_work,
+                      bool with_world) noexcept {
   const Place& place = places_[i];
   if (place.body < 0) return;
   Entry& entry = bodies_[static_cast<std::size_t>(place.body)];
   entry.held.sent(place.grip, wrench, ramp_work);
-  entry.own[place.grip] = {true, engaged, held, twist};
+  entry.own[place.grip] = hand;
   entry.on_the_wall = entry.on_the_wall || !with_world;
 }
 

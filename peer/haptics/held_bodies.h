@@ -20,8 +20,9 @@ enum class Coupling {
 /// A HeldBody for each free body with grips. How far its replica counts goes by the delay of this site's
 /// loop: where host and hand are in one process, or a few milliseconds apart, the host's own body is as new
 /// and is used as it is. In one process with a model of the fluid's wrench on it the replica is used all the
-/// same: it has the fluid at 1 kHz, however slow the world's steps are. One thread, the device loop's;
-/// neither allocates nor locks once made.
+/// same: it has the fluid at 1 kHz, however slow the world's steps are. A body that no device here moves is
+/// not followed, and what swings in one is looked for only where a device gives way to the force. One thread,
+/// the device loop's; neither allocates nor locks once made.
 class HeldBodies {
  public:
   /// `scene` must outlive it.
@@ -47,11 +48,11 @@ class HeldBodies {
   /// In place of the coupling's `wanted` (HeldBody::limit).
   Wrench guard(std::size_t i, const Wrench& wanted, const Pose& hand, const Twist& twist, double dt,
                double most_damping, double pace) noexcept;
-  /// What the device of grip `i` was sent, and what its coupling used of the hand, by the world's time;
+  /// What the device of grip `i` was sent, and the hand as its coupling used it, by the world's time;
   /// `ramp_work`: J that its engagement ramp gave (ForceRendering::ramp_work). `with_world`: the hand itself
   /// goes by that (Device::goes_with_world).
-  void sent(std::size_t i, const Wrench& wrench, bool engaged, const Pose& held, const Twist& twist,
-            double ramp_work, bool with_world) noexcept;
+  void sent(std::size_t i, const Wrench& wrench, const OwnHand& hand, double ramp_work,
+            bool with_world) noexcept;
   /// The coupling of grip `i` is that from now on, at the host and here.
   void set_gains(std::size_t i, const CouplingGains& gains) noexcept;
   /// Nobody here moves grip `i`.

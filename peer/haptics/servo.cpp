@@ -352,7 +352,9 @@ void Servo::tick(std::int64_t now_ns, bool fresh) noexcept {
                               signals.guarded.force += guidance(hand);
                               return signals.guarded;
                             });
-      held_.sent(i, felt.wrench, hand.felt.holds(), hand.felt.held().pose, hand.felt.held().twist,
+      held_.sent(i, felt.wrench,
+                 {true, hand.felt.holds(), hand.felt.held().pose, hand.felt.held().twist,
+                  port->device().gives_way()},
                  hand.felt.ramp_work(), hand.with_world);
     }
     hand.given = felt.wrench;

@@ -21,8 +21,9 @@ namespace slosh {
 struct OwnHand {
   bool here = false;  ///< a device of this site moves the grip
   bool engaged = false;
-  Pose handle;  ///< as the coupling uses it (net/engagement.h)
-  Twist twist;  ///< by the body's time
+  Pose handle;         ///< as the coupling uses it (net/engagement.h)
+  Twist twist;         ///< by the body's time
+  bool feels = false;  ///< it gives way to the force (Device::gives_way)
 };
 
 /// From `a` (share 0) to `b` (1), what is not a motion as `a` has it.

@@ -30,6 +30,7 @@ struct HostUpdate {
   double pace = 1.0;                ///< s of the body's time a s of `now_ns`' clock, 0–1
   bool tells_fluid = false;         ///< the host says what the fluid alone puts on the body:
   Wrench fluid{};                   ///< N, N·m about the centre of mass, the mean over the step
+  bool felt = true;                 ///< an own hand feels the replica: else what swings is not looked for
 };
 
 }  // namespace slosh

@@ -76,9 +76,15 @@ FluidLoad LoadEstimator::load_of(const HostUpdate& word, const Before& before) n
     acting.told_mass[i] = fluid.added_mass[row][row];
     acting.told_drag[i] = -fluid.d_velocity[row][row];
   }
-  if (follows_slosh) carried.update(acting);
+  const bool looks = follows_slosh && word.felt;
+  if (looks) {
+    carried.update(acting);
+  } else if (looks_for_slosh) {
+    carried.restart();
+  }
+  looks_for_slosh = looks;
   // What others do within the delay is not known, and a mode that went by it would be driven by it.
-  const double alone = follows_slosh && !(before.shared) ? 1.0 : 0.0;
+  const double alone = looks && !before.shared ? 1.0 : 0.0;
   const double most = std::clamp(elapsed, 0.0, kLongestStep) / Fallback::kChange;
   slosh_share += std::clamp(alone - slosh_share, -most, most);
   carried.put_into(load, load.wrench, pace, acting, slosh_share, before.round_trip);

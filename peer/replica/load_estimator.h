@@ -18,6 +18,7 @@ struct LoadEstimator {
   void restart() noexcept {
     fluid = FluidLoad{};
     carried.restart();
+    looks_for_slosh = false;
     slosh_share = 0.0;
     std::fill(on_hands.begin(), on_hands.end(), Wrench{});
     disturbance = model_uncertainty = quiet_load = 0.0;
@@ -47,7 +48,8 @@ struct LoadEstimator {
 
   FluidLoad fluid;  ///< how the fluid answers to the body, as was said last
   bool follows_slosh;
-  double slosh_share = 0.0;  ///< 0–1: how far what swings is followed at all
+  bool looks_for_slosh = false;  ///< the newest update was felt
+  double slosh_share = 0.0;      ///< 0–1: how far what swings is followed at all
   CarriedFluid carried;
   bool tells_fluid = false;        ///< the newest update did
   glm::dvec3 fluid_force{0.0};     ///< N, of the update before

@@ -3,8 +3,11 @@
 
 #include <gtest/gtest.h>
 
+#include <utility>
+
 #include "net/clock.h"
 #include "servo_kit.h"
+#include "swinging_host.h"
 
 namespace slosh {
 namespace {
@@ -52,7 +55,7 @@ double share_of(const Site& site, double seconds) {
       }
     }
     held.update(message, fresh, now_ns);
-    held.sent(0, {}, true, Pose{}, Twist{}, 0.0, false);
+    held.sent(0, {}, {true, true, Pose{}, Twist{}, true}, 0.0, false);
     held.advance(now_ns + 1'000'000, 1.0, 0.001);
   }
   return held.share(0);
@@ -63,6 +66,62 @@ TEST(HeldBodies, InOneProcessTheReplicaIsForWhatTheFluidIsKnownOf) {
   EXPECT_LT(share_of({}, 0.1), 0.5) << "it comes in over half a second";
   EXPECT_EQ(share_of({Coupling::kReplica, true, false}, 1.0), 0.0) << "else the host's own body is as new";
   EXPECT_EQ(share_of({Coupling::kSpring, true, true}, 1.0), 0.0);
+}
+
+TEST(HeldBodies, WhatNobodyHereMovesIsNotFollowed) {
+  Scene scene = test::one_grip_scene();
+  scene.gravity = glm::dvec3(0.0);
+  scene.bodies[0].motion = BodyMotion::kFree;
+  scene.bodies[0].mass = {0.2, glm::dvec3(0.0), glm::dmat3(1e-3)};
+  HeldBodies held(scene, Coupling::kReplica);
+  std::int64_t now_ns = to_nanoseconds(10.0);
+  BodyMessage message;
+  const auto go_on = [&](int ticks, bool moved) {
+    for (int i = 0; i < ticks; ++i, now_ns += 1'000'000) {
+      const bool fresh = i % 10 == 0;
+      if (fresh) {
+        message = state_at(static_cast<int>(now_ns / 1'000'000 - 10'000), now_ns);
+        message.bodies.grips[0].on_hand = {};
+        message.fluid_models.emplace_back().tick = message.bodies.tick;
+      }
+      held.update(message, fresh, now_ns);
+      if (moved)
+        held.sent(0, {}, {true, false, Pose{}, Twist{}, true}, 0.0, false);
+      else
+        held.not_here(0);
+      held.advance(now_ns + 1'000'000, 1.0, 0.001);
+    }
+  };
+  go_on(1000, true);
+  EXPECT_TRUE(held.held(0)->started());
+  EXPECT_EQ(held.share(0), 1.0);
+  go_on(20, false);
+  EXPECT_FALSE(held.held(0)->started());
+  EXPECT_EQ(held.share(0), 0.0) << "a hand that takes it up goes on from the host's body";
+  go_on(100, true);
+  EXPECT_TRUE(held.held(0)->started());
+  EXPECT_GT(held.share(0), 0.0);
+  EXPECT_LT(held.share(0), 0.5);
+}
+
+TEST(HeldBodies, OnlyAHandThatFeelsLooksForWhatSwings) {
+  const auto found_by = [](bool feels) {
+    test::SwingingHost host;
+    HeldBodies held(host.scene, Coupling::kReplica);
+    for (int ms = 0; ms < 3000; ++ms) {
+      const BodyMessage word = host.word(ms);
+      const DeviceReport hand = host.hand(ms);
+      held.update(word, ms % 2 == 0, to_nanoseconds(0.001 * ms));
+      (void)held.guard(0, word.bodies.grips[0].on_hand, hand.pose, hand.twist, 0.001, 500.0, 1.0);
+      held.sent(0, word.bodies.grips[0].on_hand, {true, true, hand.pose, hand.twist, feels}, 0.0, false);
+      held.advance(to_nanoseconds(0.001 * (ms + 1)), 1.0, 0.001);
+    }
+    return std::pair(held.held(0)->slosh(0).mode().mass, held.energy(0));
+  };
+  const auto [swings, energy] = found_by(true);
+  EXPECT_GT(swings, 0.5);
+  EXPECT_NE(energy, 0.0);
+  EXPECT_EQ(found_by(false), std::pair(0.0, energy)) << "what its person puts in is counted all the same";
 }
 
 /// Where its grip is after a second in which a hand 1 cm away pulls at the replica.
@@ -84,7 +143,7 @@ double pulled_to(double mass, const std::shared_ptr<const BodyCuts>& cuts) {
       message.fluid_models.emplace_back().tick = message.bodies.tick;
     }
     held.update(message, fresh, now_ns);
-    held.sent(0, {}, i >= 1000, hand, Twist{}, 0.0, false);
+    held.sent(0, {}, {true, i >= 1000, hand, Twist{}, true}, 0.0, false);
     held.advance(now_ns + 1'000'000, 1.0, 0.001);
   }
   return held.grip(0, GripState{}).pose.position.x;

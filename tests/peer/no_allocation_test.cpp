@@ -236,7 +236,7 @@ TEST(NoAllocation, ATickOfAReplicaWithSwingingFluidThatIsRecordedAt1kHz) {
     while (servo.samples().pop(sample)) samples += 1;
     const ThreadCalls begin = thread_calls();
     held.update(word, fresh, ns(ms));
-    held.sent(0, word.bodies.grips[0].on_hand, true, arm.next.pose, arm.next.twist, 0.0, false);
+    held.sent(0, word.bodies.grips[0].on_hand, {true, true, arm.next.pose, arm.next.twist, true}, 0.0, false);
     held.advance(ns(ms + 1), 1.0, 0.001);
     const ThreadCalls now = thread_calls() - begin;
     held_calls.allocations += now.allocations;
