@@ -159,9 +159,14 @@ SLOSH_HD inline glm::dvec3 impulse_on_a(const ContactRows& rows) {
   return rows.normal.impulse * rows.n + rows.tangent_u.impulse * rows.u + rows.tangent_v.impulse * rows.v;
 }
 
+/// The most that one iteration changed.
+struct Change {
+  double impulse = 0.0;  ///< N·s
+  double speed = 0.0;    ///< m/s at the contact
+};
+
 /// One iteration of Gauss–Seidel on one contact: the normal, then friction in the circle that it allows.
-/// Returns the largest change of an impulse, N·s.
-SLOSH_HD inline double solve_once(ContactRows& rows, double target, Vector6& a, Vector6& b) {
+SLOSH_HD inline Change solve_once(ContactRows& rows, double target, Vector6& a, Vector6& b) {
   Constraint& n = rows.normal;
   const double wanted = n.impulse + n.effective_mass * (target - speed_along(n, a, b));
   const double normal_change = glm::min(glm::max(wanted, 0.0), rows.most) - n.impulse;
@@ -179,7 +184,10 @@ SLOSH_HD inline double solve_once(ContactRows& rows, double target, Vector6& a, 
   const glm::dvec2 slip_change(along_u - u.impulse, along_v - v.impulse);
   apply(u, slip_change.x, a, b);
   apply(v, slip_change.y, a, b);
-  return glm::max(std::abs(normal_change), glm::length(slip_change));
+  const double normal = std::abs(normal_change), slip = glm::length(slip_change);
+  const auto speed = [](double impulse, double mass) { return impulse > 0.0 ? impulse / mass : 0.0; };
+  return {glm::max(normal, slip), glm::max(speed(normal, n.effective_mass),
+                                           speed(slip, glm::min(u.effective_mass, v.effective_mass)))};
 }
 
 }  // namespace rows

@@ -9,12 +9,14 @@ namespace slosh {
 
 namespace {
 
-// Iterations of Gauss–Seidel, there and back: until no impulse changes by more than a share of the largest,
-// or the most that a step may cost. Flat faces that rub on each other come to a ten-millionth hardly ever,
-// and a hundred-thousandth lets towers lean. What moves the poses alone is not carried on: it may be rougher.
+// Iterations of Gauss–Seidel, there and back: until no contact's speed changes by more than that (m/s; of
+// what moves the poses alone and is not carried on, it may be more), or no impulse by more than rounding
+// leaves of the largest, or the most that a step may cost. Flat faces that rub on each other come to that
+// share hardly ever.
 constexpr int kMaxIterations = 150;
-constexpr double kVelocitySettled = 1e-6;
-constexpr double kTravelSettled = 1e-5;
+constexpr double kVelocitySettled = 5e-7;
+constexpr double kTravelSettled = 3e-5;
+constexpr double kImpulseSettled = 1e-7;
 
 /// Of a contact's normal and its two tangents, one a contact; empty without joints.
 using Spreads = std::vector<std::array<JointSpread, 3>>;
@@ -115,21 +117,29 @@ class Iteration {
     return std::abs(change);
   }
 
-  // True where hardly an impulse changed.
+  // True where hardly anything changed.
   bool there_and_back() {
-    double change = 0.0, largest = 0.0, axis_change = 0.0, axis_largest = 0.0;
+    double change = 0.0, largest = 0.0, axis_change = 0.0, axis_largest = 0.0, speed = 0.0;
     const auto solve_contact = [&](std::size_t i) {
       const glm::dvec3 had = impulse(i);
-      change = std::max(change, rows::solve_once(all_[i], all_[i].target.*target_, a(i), b(i)));
+      const rows::Change now = rows::solve_once(all_[i], all_[i].target.*target_, a(i), b(i));
+      change = std::max(change, now.impulse);
+      speed = std::max(speed, now.speed);
       spread(i, had);
     };
     for (std::size_t i = 0; i < all_.size(); ++i) solve_contact(i);
-    for (AxisRow& axis : axes_) axis_change = std::max(axis_change, solve(axis));
-    for (std::size_t i = axes_.size(); i-- > 0;) axis_change = std::max(axis_change, solve(axes_[i]));
+    const auto solve_axis = [&](AxisRow& axis) {
+      const double now = solve(axis);
+      axis_change = std::max(axis_change, now);
+      if (now > 0.0) speed = std::max(speed, now / axis.row.effective_mass);
+    };
+    for (AxisRow& axis : axes_) solve_axis(axis);
+    for (std::size_t i = axes_.size(); i-- > 0;) solve_axis(axes_[i]);
     for (std::size_t i = all_.size(); i-- > 0;) solve_contact(i);
     for (const rows::ContactRows& rows : all_) largest = std::max(largest, rows.normal.impulse);
     for (const AxisRow& axis : axes_) axis_largest = std::max(axis_largest, std::abs(axis.row.impulse));
-    return change <= settled_ * largest && axis_change <= settled_ * axis_largest;
+    return speed <= settled_ ||
+           (change <= kImpulseSettled * largest && axis_change <= kImpulseSettled * axis_largest);
   }
 
   const std::vector<Contact>& contacts_;

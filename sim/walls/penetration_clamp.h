@@ -117,10 +117,17 @@ SLOSH_HD inline bool clamp_particle(const ClampBody& body, const glm::vec3& from
     // The wall that it met, or past its middle the side that it came from.
     const Look& wall = bad.slope < kNoSlope || past_middle(good, bad, body.depth) ? good : bad;
     const float lacks = rest - (wall.distance + glm::dot(end - wall.at, wall.normal));
+    const glm::vec3 wanted = end;
     end = lacks > 0.0f ? end + wall.normal * lacks : wall.at + wall.normal * (rest - wall.distance);
     if (turn + 1 == kMaxIterations) end = good.at;
-    const glm::vec3 normal = body.after.turn * wall.normal;
-    const float into = glm::dot(v - body.after.velocity_at(body.after.place(end)), normal);
+    const glm::vec3 of_wall = body.after.velocity_at(body.after.place(end));
+    glm::vec3 normal = body.after.turn * wall.normal;
+    float into = glm::dot(v - of_wall, normal);
+    // Out of one wall and into the next, as between wires that the field hardly tells apart.
+    if (into >= 0.0f && wanted != end) {
+      normal = body.after.turn * glm::normalize(end - wanted);
+      into = glm::dot(v - of_wall, normal);
+    }
     if (into < 0.0f) v -= into * normal;
   }
   if (caught) x = body.after.place(end);

@@ -111,6 +111,31 @@ TEST_P(Thickness, no_way_leads_through) {
 
 INSTANTIATE_TEST_SUITE_P(spacings, Thickness, ::testing::Values(1.0f, 1.2f, 1.33f, 1.5f, 3.0f));
 
+// Two plates with less between them than the field tells apart, and a particle that is pushed out of the one
+// and into the other: it got as fast as particles may be, and stayed so where it was.
+TEST(PenetrationClamp, a_slit_takes_the_speed_of_what_is_pressed_into_it) {
+  for (const float slit : {0.1f, 0.2f, 0.3f}) {
+    const float far = 1.0f + slit;
+    const Solid plates(
+        glm::vec3(0.0f, -0.06f, -0.06f), {(far + 1.0f) * kSpacing, 0.06f, 0.06f}, [&](const glm::vec3& p) {
+          return std::min(
+              box_distance(p, {0.0f, -0.06f, -0.06f}, {kSpacing, 0.06f, 0.06f}),
+              box_distance(p, {far * kSpacing, -0.06f, -0.06f}, {(far + 1.0f) * kSpacing, 0.06f, 0.06f}));
+        });
+    constexpr float kStep = 0.002f, kPush = 0.5f;  // s, m/s a step
+    glm::vec3 x(0.9f * kSpacing, 0.0f, 0.0f), v(0.0f);
+    int held = 0;
+    for (int step = 0; step < 50; ++step) {
+      v.x += kPush;
+      const glm::vec3 from = x;
+      x += kStep * v;
+      held += clamp_particle(plates.body, from, x, v) ? 1 : 0;
+      EXPECT_LT(v.x, 2.5f * kPush) << "slit of " << slit << " spacings, step " << step;
+    }
+    EXPECT_GT(held, 15) << slit;
+  }
+}
+
 // A particle at rest, and a wall that comes over it: up to eight spacings a step.
 TEST(PenetrationClamp, wall_that_overtakes_takes_the_particle_along) {
   for (const float way : {0.2f, 1.0f, 4.0f, 8.0f}) {
