@@ -24,10 +24,6 @@ Result<std::size_t> World::cut(std::size_t body, const CutPlane& plane) {
   return impl_->cut_body(body, {plane.normal / length, plane.offset / length});
 }
 
-std::vector<std::vector<CutPlane>> World::cut_planes() const {
-  return impl_->bodies.cuts().all_planes();
-}
-
 Result<CutPlane> World::Impl::side_that_stays(std::size_t body, const CutPlane& plane) const {
   bool inner = false, outer = false;
   const auto is_on = [&](const glm::dvec3& at) { (plane.distance(at) > 0.0 ? outer : inner) = true; };

@@ -165,8 +165,6 @@ class World {
   /// left; the plane misses it; a part would be thinner than particles are apart; grips and joints are on
   /// both.
   Result<std::size_t> cut(std::size_t body, const CutPlane& plane);
-  /// By which planes each body is bounded now, in its mesh frame; empty where no body may be cut.
-  std::vector<std::vector<CutPlane>> cut_planes() const;
 
   /// From the next step on. Errors: no such fluid in the world, or the time step would not be stable with it
   /// (then with the largest value that is). `pascal_seconds` >= 0.

@@ -60,10 +60,6 @@ void add_show_options(CLI::App& verb, ShowOptions& options, bool has_window) {
       "--ghost", options.ghost,
       "Show the tools of an earlier run too, translucent, where its hands had them by then, or at that "
       "point\nof the task, whose steps it does as you do: its folder, or its poses.csv");
-  verb.add_option("--guide", options.guide,
-                  "Newtons, at most, that lead a hand to where the ghost's is: a force that never gives more "
-                  "energy\nthan it took (of devices that give force)")
-      ->check(in_range(0.0, 20.0));
   verb.add_flag("--stereo", options.stereo,
                 "A film in both eyes, side by side, each of that size (a headset's films are so anyway)");
   verb.add_option("--fps", options.frames_per_second, "Pictures a second of the film")
@@ -148,6 +144,13 @@ void add_show_options(CLI::App& verb, ShowOptions& options, bool has_window) {
       ->delimiter(',')
       ->check(CLI::IsMember(plot_quantities()));
   verb.add_flag("!--no-render", options.render, "No picture at all");
+}
+
+void add_guide_option(CLI::App& verb, ShowOptions& options) {
+  verb.add_option("--guide", options.guide,
+                  "Newtons, at most, that lead a hand to where the ghost's is: a force that never gives more "
+                  "energy\nthan it took (of devices that give force)")
+      ->check(in_range(0.0, 20.0));
 }
 
 void add_headset_options(CLI::App& verb, ShowOptions& options, bool has_hands) {

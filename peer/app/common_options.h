@@ -25,15 +25,16 @@ void add_out_options(CLI::App& verb, ShowOptions& options, const std::string& te
 /// run a world. `text`: that, and who opens one.
 void add_never_a_window_option(CLI::App& verb, const std::string& text);
 
-/// How a run is drawn: --size, --fps, --surface, --bilateral, --ocio, --display, --view, --environment,
-/// --font-scale, --runs,
-/// --plot, --curves, --no-render. `has_window`: the verb can also open one. `verb` and `options` must outlive
-/// the parsing.
+/// How a run is drawn: --size, --ghost, --fps, --surface, --bilateral, --ocio, --display, --view,
+/// --environment, --font-scale, --runs, --plot, --curves, --no-render. `has_window`: the verb can also open
+/// one. `verb` and `options` must outlive the parsing.
 void add_show_options(CLI::App& verb, ShowOptions& options, bool has_window);
+/// --guide, of a verb with hands: beside --ghost of add_show_options().
+void add_guide_option(CLI::App& verb, ShowOptions& options);
 
-/// --measure, for a run that writes files.
 /// `--vr` and what goes with it.
 void add_headset_options(CLI::App& verb, ShowOptions& options, bool has_hands = true);
+/// --measure, for a run that writes files.
 CLI::Option* add_measure_option(CLI::App& verb, ShowOptions& options);
 
 /// --export and --export-rate, for a run that writes files.

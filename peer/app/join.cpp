@@ -204,6 +204,7 @@ void add(CLI::App& app, VerbRun& chosen, bool watch) {
                      "any distance; or spring, the host's as it comes, for links below some 20 ms")
         ->check(CLI::IsMember({"replica", "spring"}))
         ->capture_default_str();
+    add_guide_option(*verb, *o);
   }
   add_seconds_option(*verb, o->seconds, 0.01, "Simulated seconds to stay (until the host ends)");
   add_out_options(*verb, *o,

@@ -103,6 +103,7 @@ void add_play(CLI::App& app, VerbRun& chosen) {
                    "one for all handles, or one "
                    "each; `slosh devices` lists what is there")
       ->allow_extra_args(false);
+  add_guide_option(*verb, *o);
   verb->add_option(
       "--score", o->score,
       "Add a row to this table (CSV) at the end: what the run of the scene's guided task came to, "

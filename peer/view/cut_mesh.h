@@ -13,10 +13,4 @@ namespace slosh {
 /// can be drawn, of one with more than kMaxCutTriangles all of it.
 TriangleMesh cut_mesh(const TriangleMesh& mesh, std::span<const CutPlane> planes);
 
-/// Those that bound a body now; none where it is whole.
-inline std::span<const CutPlane> planes_of(const BodyCuts* cuts, std::size_t body) {
-  const BodyCut* const cut = cuts ? cuts->of(body) : nullptr;
-  return cut ? std::span<const CutPlane>(cut->planes) : std::span<const CutPlane>();
-}
-
 }  // namespace slosh

@@ -1,10 +1,9 @@
 // The surfaces that contacts are looked for on: their points, which of them are flat, and clusters of them.
 #include <algorithm>
-#include <array>
-#include <map>
 #include <numeric>
 
 #include "sim/bodies/contacts.h"
+#include "sim/bodies/corners.h"
 
 namespace slosh {
 
@@ -33,30 +32,16 @@ std::vector<char> flat_points(const std::vector<glm::vec3>& points, const std::v
   return flat;
 }
 
-// The corners of a mesh, once for each face that meets there: what a flat body stands on, which a sample of
-// its surface misses.
-void add_corners(const TriangleMesh& mesh, std::vector<glm::vec3>& points, std::vector<glm::vec3>& normals) {
-  constexpr float kOtherFace = 0.8f;  // cosine
-  std::map<std::array<float, 3>, std::vector<glm::vec3>> faces_at;
+Corners corners_of(const TriangleMesh& mesh) {
+  CornerFinder<glm::vec3> corners;
   for (const glm::uvec3& t : mesh.triangles) {
     const glm::vec3 a = mesh.positions[t.x], b = mesh.positions[t.y], c = mesh.positions[t.z];
     const glm::vec3 area = glm::cross(b - a, c - a);
     if (!(glm::length(area) > 0.0f)) continue;
     const glm::vec3 normal = glm::normalize(area);
-    for (const glm::vec3& p : {a, b, c}) {
-      std::vector<glm::vec3>& faces = faces_at[{p.x, p.y, p.z}];
-      const bool known = std::any_of(faces.begin(), faces.end(),
-                                     [&](const glm::vec3& n) { return glm::dot(n, normal) > kOtherFace; });
-      if (!known) faces.push_back(normal);
-    }
+    for (const glm::vec3& p : {a, b, c}) corners.add(p, normal);
   }
-  for (const auto& [at, faces] : faces_at) {
-    if (faces.size() < 3) continue;
-    for (const glm::vec3& normal : faces) {
-      points.emplace_back(at[0], at[1], at[2]);
-      normals.push_back(normal);
-    }
-  }
+  return corners.found();
 }
 
 }  // namespace
@@ -76,7 +61,9 @@ ContactFinder::ContactFinder(const Scene& scene, const SampledScene& sampled) : 
     shape.normals = sampled.surfaces[i].normals;
     shape.field = sampled.distance_fields[i];
     if (scene.bodies[i].mesh >= 0) {
-      add_corners(scene.meshes[static_cast<std::size_t>(scene.bodies[i].mesh)], shape.points, shape.normals);
+      const Corners corners = corners_of(scene.meshes[static_cast<std::size_t>(scene.bodies[i].mesh)]);
+      shape.points.insert(shape.points.end(), corners.points.begin(), corners.points.end());
+      shape.normals.insert(shape.normals.end(), corners.normals.begin(), corners.normals.end());
     }
     measure(shape);
   }

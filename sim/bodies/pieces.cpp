@@ -1,10 +1,8 @@
 #include "sim/bodies/pieces.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
-#include <map>
 #include <tuple>
 
 namespace slosh {
@@ -223,25 +221,10 @@ DistanceField field_within(const DistanceField& whole, std::span<const CutPlane>
 }
 
 Corners corners_of(const ConvexSolid& solid) {
-  constexpr double kOtherFace = 0.8;  // cosine
-  std::map<std::array<double, 3>, std::vector<glm::dvec3>> faces_at;
-  for (const ConvexSolid::Face& face : solid.faces) {
-    for (const glm::dvec3& p : face.corners) {
-      std::vector<glm::dvec3>& normals = faces_at[{p.x, p.y, p.z}];
-      if (!std::ranges::any_of(normals,
-                               [&](const glm::dvec3& n) { return glm::dot(n, face.normal) > kOtherFace; }))
-        normals.push_back(face.normal);
-    }
-  }
-  Corners corners;
-  for (const auto& [at, normals] : faces_at) {
-    if (normals.size() < 3) continue;
-    for (const glm::dvec3& normal : normals) {
-      corners.points.emplace_back(at[0], at[1], at[2]);
-      corners.normals.emplace_back(normal);
-    }
-  }
-  return corners;
+  CornerFinder<glm::dvec3> corners;
+  for (const ConvexSolid::Face& face : solid.faces)
+    for (const glm::dvec3& p : face.corners) corners.add(p, face.normal);
+  return corners.found();
 }
 
 }  // namespace slosh

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "scenes/scene.h"
+#include "sim/bodies/corners.h"
 #include "sim/math/cut_plane.h"
 
 namespace slosh {
@@ -55,11 +56,6 @@ SurfaceSamples samples_within(const SurfaceSamples& whole, std::span<const CutPl
 /// they are too small. On the same grid.
 DistanceField field_within(const DistanceField& whole, std::span<const CutPlane> planes);
 
-/// Corners where three faces and more meet, once for each of them, and that face's normal: as the contacts'
-/// points have them.
-struct Corners {
-  std::vector<glm::vec3> points, normals;
-};
 Corners corners_of(const ConvexSolid& solid);
 
 }  // namespace slosh

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "sim/math/cut_plane.h"
@@ -24,5 +25,11 @@ struct BodyCuts {
     return body < bodies.size() && !bodies[body].planes.empty() ? &bodies[body] : nullptr;
   }
 };
+
+/// Those that bound a body now; none where it is whole.
+inline std::span<const CutPlane> planes_of(const BodyCuts* cuts, std::size_t body) {
+  const BodyCut* const cut = cuts ? cuts->of(body) : nullptr;
+  return cut ? std::span<const CutPlane>(cut->planes) : std::span<const CutPlane>();
+}
 
 }  // namespace slosh

@@ -38,11 +38,10 @@ struct Momenta {
 Momenta momenta_in(const Kitchen& kitchen, const World& world) {
   Momenta sum;
   const BodySnapshot state = state_in(world);
-  const std::vector<std::vector<CutPlane>> planes = world.cut_planes();
   for (std::size_t b = 0; b < state.bodies.size(); ++b) {
     const BodyState& s = state.bodies[b];
     if (s.gone || kitchen.scene.bodies[b].motion != BodyMotion::kFree) continue;
-    const SolidIntegrals solid = integrate(clipped(kitchen.solids[b], planes[b]));
+    const SolidIntegrals solid = integrate(clipped(kitchen.solids[b], planes_of(state.cuts.get(), b)));
     const double mass = kCutDensity * solid.volume;
     EXPECT_LT(glm::distance(s.center_of_mass, transform_point(s.pose, solid.center)), 1e-12);
     const glm::dmat3 r = glm::mat3_cast(s.pose.orientation);
@@ -122,7 +121,7 @@ TEST(Cutting, ThePartWithTheGripKeepsTheBodysNumber) {
     World world = kitchen.world();
     const CutPlane plane{{0, 0, 1}, 0.15 * side};  // the grip is on the smaller part
     ASSERT_TRUE(world.cut(0, plane));
-    EXPECT_LT(world.cut_planes()[0].front().distance({0.0, 0.0, 0.2 * side}), 0.0);
+    EXPECT_LT(state_in(world).cuts->bodies[0].planes.front().distance({0.0, 0.0, 0.2 * side}), 0.0);
   }
   Kitchen kitchen = tumbling_block(2);
   kitchen.add_grip(0, {0.0, 0.0, 0.2});
@@ -148,7 +147,7 @@ TEST(Cutting, AJointHoldsThePartThatItIsOnWhereItDid) {
   };
   for (int i = 0; i < 200; ++i) world.step({});
   ASSERT_TRUE(world.cut(0, {{0.0, 0.3, 1.0}, 0.1}));
-  EXPECT_LT(world.cut_planes()[0].front().distance(pivot), 0.0);
+  EXPECT_LT(state_in(world).cuts->bodies[0].planes.front().distance(pivot), 0.0);
   const double before = state_in(world).joints[0].position;
   EXPECT_LT(off(), 1e-9);
   for (int i = 0; i < 300; ++i) {
@@ -191,11 +190,11 @@ TEST(Cutting, ASavedWorldKnowsThePiecesAndItsStartIsWhole) {
   ASSERT_TRUE(world.save(cut));
   const Result<bool> restored = other.restore(cut);
   ASSERT_TRUE(restored) << restored.error().text();
-  EXPECT_EQ(world.cut_planes(), other.cut_planes());
+  EXPECT_EQ(state_in(world).cuts->bodies[0].planes, state_in(other).cuts->bodies[0].planes);
   for (int i = 0; i < 300; ++i) world.step({}), other.step({});
   EXPECT_EQ(world.hash(), other.hash()) << "contacts of the pieces too";
   ASSERT_TRUE(world.restore(start));
-  EXPECT_TRUE(world.cut_planes()[0].empty());
+  EXPECT_TRUE(planes_of(state_in(world).cuts.get(), 0).empty());
   for (int i = 0; i < 50; ++i) world.step({});
   EXPECT_EQ(world.hash(), whole);
 }

@@ -59,13 +59,12 @@ Pieces pieces_of(const Scene& scene, const World& world) {
 std::size_t count_inside(const Scene& scene, const World& world, double depth) {
   Snapshot picture;
   world.fill(picture);
-  const std::vector<std::vector<CutPlane>> planes = world.cut_planes();
   std::size_t inside = 0;
   for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
     const Body& body = scene.bodies[b];
     if (!is_cut(body) || picture.rigid.bodies[b].gone) continue;
-    const ConvexSolid solid =
-        clipped(convex_solid(scene.meshes[static_cast<std::size_t>(body.mesh)]), planes[b]);
+    const ConvexSolid solid = clipped(convex_solid(scene.meshes[static_cast<std::size_t>(body.mesh)]),
+                                      planes_of(picture.rigid.cuts.get(), b));
     const Pose into = inverse(picture.rigid.bodies[b].pose);
     for (std::size_t p = 0; p < picture.positions.size(); ++p) {
       if (picture.fluid_index[p] == 255) continue;
