@@ -139,6 +139,8 @@ void RemoteLink::obey(const RemoteCommand& command) {
     case RemoteCommand::Kind::kParameter:
       request_parameter(command);
       return;
+    case RemoteCommand::Kind::kThing:
+      return;  // of a world of one's own alone
   }
 }
 

@@ -21,8 +21,8 @@ namespace slosh {
 struct OwnHand {
   bool here = false;  ///< a device of this site moves the grip
   bool engaged = false;
-  Pose handle;         ///< as the coupling uses it (net/engagement.h)
-  Twist twist;         ///< by the body's time
+  Pose handle{};       ///< as the coupling uses it (net/engagement.h)
+  Twist twist{};       ///< by the body's time
   bool feels = false;  ///< it gives way to the force (Device::gives_way)
 };
 
