@@ -114,7 +114,7 @@ std::string csv_line(const ErrorRow& r) {
   const double error = r.refused.empty() ? r.error() : std::nan("");
   return csv_field(r.case_id) + ',' + csv_field(r.quantity) + ',' + csv_field(r.unit) + ',' +
          (r.plotted ? '1' : '0') + ',' + csv_field(r.model) + ',' + csv_field(r.backend) + ',' +
-         format("%d,%.6g,%.4g,%.4g,%.0f,%.0f,%.6g,%.6g,%.6g,%.8g,%.8g,%.8g,%.5g,%.0f,%u,", r.threads,
+         format("%d,%.6g,%.4g,%.4g,%.0f,%.0f,%.6g,%.6g,%.6g,%.12g,%.12g,%.12g,%.5g,%.0f,%u,", r.threads,
                 r.spacing, r.support_ratio, r.step_share, r.particles, r.steps, r.time_step, r.simulated_s,
                 r.wall_s, r.measured, r.expected, r.scale, error, r.retired, r.status) +
          csv_field(r.refused);
