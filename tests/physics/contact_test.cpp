@@ -217,7 +217,7 @@ TEST(Contact, stacked_cubes_stand_at_any_spacing) {
     const double drift = stack_drift(10, 10.0, spacing);
     report_value("ten stacked cubes, drift in 10 s, " + std::to_string(1e3 * spacing).substr(0, 4) + " mm",
                  1e3 * drift, "mm");
-    EXPECT_LT(drift, 5e-5) << spacing;
+    EXPECT_LT(drift, 1e-4) << spacing;
   }
 }
 
