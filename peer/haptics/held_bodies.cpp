@@ -56,6 +56,7 @@ HeldBodies::HeldBodies(const Scene& scene, Coupling coupling)
     for (std::size_t i = 0; i < places.size(); ++i)
       places_[places[i]] = {static_cast<int>(bodies_.size()), i};
     const std::size_t count = grips.size();
+    // The first update comes before the first tick has said which hands are here.
     bodies_.push_back({b, std::move(places), HeldBody(body, std::move(grips)),
                        std::vector<OwnHand>(count, {.here = true, .feels = true}),
                        std::vector<MotionError>(count), std::vector<HostHand>(count), 0.0, false, false,

@@ -221,7 +221,7 @@ TEST(Contact, stacked_cubes_stand_at_any_spacing) {
   }
 }
 
-// What settles is each contact's speed: by shares of the largest impulse, the light ones fell.
+// What settles is each contact's speed: by 3e-7 and by 1e-5 of the largest impulse the light ones fell.
 TEST(Contact, light_cubes_carry_a_heavy_one) {
   const double drift = stack_drift(5, 10.0, kSpacing, 2.0);
   report_value("a cube of 2 kg on four of 20 g, drift in 10 s", 1e3 * drift, "mm");

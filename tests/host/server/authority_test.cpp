@@ -104,9 +104,7 @@ TEST_F(AuthorityTest, WhoRunsTheWorldDoesSoWithinABudget) {
 
 TEST_F(AuthorityTest, TheHostGivesTheRoleAndTakesItBack) {
   ScriptedPeer& ana = join(1, "Ana");
-  ScriptedPeer& old = *peers.emplace_back(std::make_unique<ScriptedPeer>(network, 2));
-  old.capabilities &= ~wire::kLinkRights;
-  old.hello(hold, "Old");
+  ScriptedPeer& old = arrive(2, "Old", wire::kOurCapabilities & ~wire::kLinkRights);
   go(0.1);
   ASSERT_TRUE(old.in());
   EXPECT_EQ(ana.welcomes[0].role, wire::Role::kParticipant);

@@ -59,14 +59,8 @@ TEST_F(Churn, TwoThousandPeersLeaveNothingBehind) {
 }
 
 TEST_F(Churn, ComingsAndGoingsAreToldAsDifferences) {
-  const auto observer = [&](std::uint8_t key, wire::Capabilities capabilities) -> ScriptedPeer& {
-    peers.push_back(std::make_unique<ScriptedPeer>(network, key));
-    peers.back()->capabilities = capabilities;
-    peers.back()->hello(hold, "observer " + std::to_string(key));
-    return *peers.back();
-  };
-  ScriptedPeer& changes = observer(201, wire::kOurCapabilities);
-  ScriptedPeer& whole = observer(202, 0);
+  ScriptedPeer& changes = arrive(201, "observer 201", wire::kOurCapabilities);
+  ScriptedPeer& whole = arrive(202, "observer 202", 0);
   go(0.2);
   for (std::uint8_t key = 1; key <= 50; ++key) join(key, watch, "person number " + std::to_string(key));
   go(0.5);

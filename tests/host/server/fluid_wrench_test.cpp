@@ -40,10 +40,7 @@ TEST_F(FluidWrenchServer, GoToWhoHoldsTheBodyAndUnderstandsThem) {
   ScriptedPeer& ana = join(1, "Ana");
   ScriptedPeer& ben = join(2, "Ben");
   EXPECT_EQ(fluid_demand.wanted(), 0u) << "nobody holds anything";
-  peers.push_back(std::make_unique<ScriptedPeer>(network, 3, "192.0.2.1:50000"));
-  ScriptedPeer& old = *peers.back();
-  old.capabilities = wire::kRosterChanges;
-  old.hello(hold, "Old");
+  ScriptedPeer& old = arrive(3, "Old", wire::kRosterChanges);
   go(0.1);
   ana.take(0);
   old.take(1);

@@ -178,6 +178,13 @@ ScriptedPeer& ServedTest::join(std::uint8_t key, const wire::Token& token, const
   return peer;
 }
 
+ScriptedPeer& ServedTest::arrive(std::uint8_t key, const std::string& name, wire::Capabilities capabilities) {
+  ScriptedPeer& peer = *peers.emplace_back(std::make_unique<ScriptedPeer>(network, key));
+  peer.capabilities = capabilities;
+  peer.hello(hold, name);
+  return peer;
+}
+
 void ServedTest::go(double seconds, double step, const std::function<void()>& each) {
   const std::int64_t until = network.now_ns() + to_nanoseconds(seconds);
   while (network.now_ns() < until) {

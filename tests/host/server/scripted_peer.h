@@ -104,6 +104,8 @@ class ServedTest : public ::testing::Test {
   ScriptedPeer& join(std::uint8_t key, const wire::Token& token, const std::string& name = {},
                      const std::string& address = "192.0.2.1:50000");
   ScriptedPeer& join(std::uint8_t key, const std::string& name) { return join(key, hold, name); }
+  /// Says hello and can do that much; nothing runs yet.
+  ScriptedPeer& arrive(std::uint8_t key, const std::string& name, wire::Capabilities capabilities);
   /// Everybody runs for so long, in steps of 5 ms (or longer ones). Calls `each` at every step.
   void go(double seconds, double step = 0.005, const std::function<void()>& each = {});
   /// The host's thread would publish this.

@@ -167,9 +167,7 @@ TEST_F(ServerTest, ARunGoesOnAfterARestart) {
 
 TEST_F(ServerTest, EverybodyIsToldOfCutsAndWhoComesLaterToo) {
   ScriptedPeer& ana = join(1, "Ana");
-  ScriptedPeer& old = *peers.emplace_back(std::make_unique<ScriptedPeer>(network, 2));
-  old.capabilities &= ~wire::kBodyCuts;
-  old.hello(hold, "Old");
+  ScriptedPeer& old = arrive(2, "Old", wire::kOurCapabilities & ~wire::kBodyCuts);
   publish_bodies(1);
   go(0.1);
   EXPECT_TRUE(ana.cuts.empty()) << "all is whole";

@@ -347,9 +347,7 @@ TEST_F(ServerTest, TheConsoleRulesTheRun) {
 
 TEST_F(ServerTest, EverybodySeesWhereTheTaskIs) {
   ScriptedPeer& ana = join(1, "Ana");
-  ScriptedPeer& old = *peers.emplace_back(std::make_unique<ScriptedPeer>(network, 2));
-  old.capabilities &= ~wire::kTasks;
-  old.hello(hold, "Old");
+  ScriptedPeer& old = arrive(2, "Old", wire::kOurCapabilities & ~wire::kTasks);
   go(1.0);
   EXPECT_TRUE(ana.tasks.empty()) << "the scene has none";
   task = {"step 1 of 2", "Pour.", "0 kg", "", {}};
